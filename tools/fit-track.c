@@ -16,8 +16,12 @@
 #include "gst/vision/mask/mask.h"
 #include "gst/vision/track/anneal.h"
 #include "gst/vision/track/tracker.h"
+#include "tools/fit-track-take.h"
 #include "tools/frames.h"
 #include "tools/tool.h"
+
+/* Most columns and rows of a take's grid. */
+#define MOST_LINES 1000
 
 /* One camera's film. */
 typedef struct
@@ -27,7 +31,8 @@ typedef struct
   ClothFrameReader *reader;
   ClothCvSift *sift;
   ClothMask *mask;
-  guint8 *silhouette;
+  GArray *runs;                 /* its silhouette, of ClothRun */
+  guint8 *silhouette;           /* of the first picture */
   GError *error;                /* of the features */
 } Film;
 
@@ -37,6 +42,8 @@ typedef struct
   ClothTrackerKind kind;
   ClothFlatParams flat;
   gdouble near[2];
+  guint grid[2];
+  GArray *held;                 /* of guint */
   ClothRig *rig;
   guint n;
   Film *films;
@@ -44,6 +51,7 @@ typedef struct
   ClothPool *pool;
   ClothFlatPose pose;
   ClothTracker *tracker;
+  FitTrackTake *take;           /* NULL: none is asked for */
   ClothJsonWriter *json;
   GString *csv;
   guint frame;
@@ -57,11 +65,14 @@ job_clear (Job * job)
     cloth_cv_sift_free (job->films[c].sift);
     cloth_mask_free (job->films[c].mask);
     g_free (job->films[c].silhouette);
+    g_clear_pointer (&job->films[c].runs, g_array_unref);
     g_clear_error (&job->films[c].error);
   }
   g_free (job->films);
   g_free (job->views);
   cloth_tracker_free (job->tracker);
+  fit_track_take_free (job->take);
+  g_clear_pointer (&job->held, g_array_unref);
   g_clear_pointer (&job->rig, cloth_rig_free);
   cloth_pool_free (job->pool);
   g_clear_pointer (&job->json, cloth_json_writer_free);
@@ -106,6 +117,59 @@ parse_place (const gchar * text, gdouble place[2], GError ** error)
   return FALSE;
 }
 
+/* Whole numbers with commas between them, below @limit. */
+static gboolean
+parse_list (const gchar * text, guint limit, GArray * list)
+{
+  gchar *end;
+
+  do {
+    const guint64 number = g_ascii_strtoull (text, &end, 10);
+    const guint value = (guint) number;
+
+    if (!g_ascii_isdigit (*text) || number >= limit)
+      return FALSE;
+    g_array_append_val (list, value);
+    text = end + 1;
+  } while (*end == ',');
+  return *end == 0;
+}
+
+/* The grid of a take, and what is held in it. */
+static gboolean
+parse_grid (Job * job, GError ** error)
+{
+  const FitTrack *a = job->arguments;
+  g_autoptr (GArray) grid = g_array_new (FALSE, FALSE, sizeof (guint));
+
+  job->held = g_array_new (FALSE, FALSE, sizeof (guint));
+  if (!a->grid && !a->held)
+    return TRUE;
+  if (!a->grid || !parse_list (a->grid, MOST_LINES + 1, grid)
+      || grid->len != 2 || g_array_index (grid, guint, 0) < 2
+      || g_array_index (grid, guint, 1) < 2) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--grid: give columns and rows of vertices, 2 to %u each, for instance "
+        "33,35", MOST_LINES);
+    return FALSE;
+  }
+  memcpy (job->grid, grid->data, sizeof job->grid);
+  if (a->held && !parse_list (a->held, job->grid[0] * job->grid[1], job->held)) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--held %s: give vertices, row · %u + column, of the %u × %u, for "
+        "instance 0,%u", a->held, job->grid[0], job->grid[0], job->grid[1],
+        job->grid[0] - 1);
+    return FALSE;
+  }
+  if (!cloth_tracker_kind_is_3d (job->kind)
+      && job->kind != CLOTH_TRACKER_UVLESS)
+    return TRUE;
+  g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+      "--grid: the tracker “%s” does not say where on the cloth a feature is "
+      "that a camera sees; lucas-kanade does", a->tracker);
+  return FALSE;
+}
+
 static gboolean
 parse (Job * job, GError ** error)
 {
@@ -128,7 +192,7 @@ parse (Job * job, GError ** error)
     return FALSE;
   job->flat = cloth_flat_default_params (size[0], size[1]);
   job->flat.ground = a->ground;
-  return TRUE;
+  return parse_grid (job, error);
 }
 
 /* ---- pictures ---- */
@@ -174,6 +238,7 @@ open_films (Job * job, GError ** error)
     film->path = a->films[c];
     film->camera = &job->rig->cameras[c];
     film->mask = cloth_mask_new ();
+    film->runs = g_array_new (FALSE, FALSE, sizeof (ClothRun));
     film->reader = cloth_frame_reader_open (film->path, error);
     if (!film->reader)
       return FALSE;
@@ -250,29 +315,48 @@ take_background (const ClothImage * image, guint number, gpointer user_data,
 }
 
 static gboolean
-find_silhouette (Job * job, guint c, GError ** error)
+read_background (Job * job, guint c, GError ** error)
+{
+  GError *wrong = NULL;
+
+  if (cloth_frames_read (job->arguments->backgrounds[c], 1, take_background,
+          &job->films[c], &wrong) && !wrong)
+    return TRUE;
+  g_propagate_prefixed_error (error, wrong, "--background %s: ",
+      job->arguments->backgrounds[c]);
+  return FALSE;
+}
+
+static void
+find_silhouette (Job * job, guint c)
 {
   const ClothMaskParams params = cloth_mask_default_params ();
   const ClothPlanarImage view = {.luma = job->views[c].image };
-  const gsize width = (gsize) view.luma.width;
   Film *film = &job->films[c];
   const ClothRun *runs;
   guint n_runs;
-  GError *wrong = NULL;
 
-  if (!cloth_frames_read (job->arguments->backgrounds[c], 1, take_background,
-          film, &wrong) || wrong) {
-    g_propagate_prefixed_error (error, wrong, "--background %s: ",
-        job->arguments->backgrounds[c]);
-    return FALSE;
-  }
   cloth_mask_run (film->mask, &params, &view, job->pool, CLOTH_SIMD_BEST);
   runs = cloth_mask_get_runs (film->mask, &n_runs);
-  film->silhouette = g_malloc0 (width * (gsize) view.luma.height);
-  for (guint i = 0; i < n_runs; i++)
-    memset (film->silhouette + runs[i].row * width + runs[i].begin, 1,
-        runs[i].end - runs[i].begin);
-  return TRUE;
+  g_array_set_size (film->runs, 0);
+  if (n_runs)
+    g_array_append_vals (film->runs, runs, n_runs);
+}
+
+/* As pixels. */
+static void
+draw_silhouette (Job * job, guint c)
+{
+  Film *film = &job->films[c];
+  const gsize width = (gsize) film->camera->width;
+
+  film->silhouette = g_malloc0 (width * (gsize) film->camera->height);
+  for (guint i = 0; i < film->runs->len; i++) {
+    const ClothRun *run = &g_array_index (film->runs, ClothRun, i);
+
+    memset (film->silhouette + run->row * width + run->begin, 1,
+        run->end - run->begin);
+  }
 }
 
 static gboolean
@@ -285,8 +369,10 @@ find_pose (Job * job, GError ** error)
   ClothFlatPoses poses;
 
   for (guint c = 0; c < job->n; c++) {
-    if (!find_silhouette (job, c, error))
+    if (!read_background (job, c, error))
       return FALSE;
+    find_silhouette (job, c);
+    draw_silhouette (job, c);
     views[c].camera = job->films[c].camera;
     views[c].mask = (ClothImage) {
     job->films[c].silhouette, views[c].camera->width,
@@ -332,6 +418,30 @@ begin_report (Job * job)
   cloth_json_writer_begin_array (w, "frames");
   if (cloth_tracker_kind_is_3d (job->kind))
     job->csv = g_string_new ("frame,marker,x_m,y_m,z_m,u_m,v_m,rays\n");
+}
+
+/* Of the first film: the clock of all. */
+static gdouble
+find_time (const Job * job)
+{
+  return cloth_frame_reader_get_time (job->films[0].reader);
+}
+
+static gboolean
+begin_take (Job * job, GError ** error)
+{
+  const FitTrackTakeOptions options = { job->arguments->output, job->grid[0],
+    job->grid[1], (const guint *) (gpointer) job->held->data, job->held->len
+  };
+
+  if (isnan (find_time (job))) {
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_INVALID_DATA,
+        "%s: its pictures have no times, which a take needs",
+        job->films[0].path);
+    return FALSE;
+  }
+  job->take = fit_track_take_new (&options, job->rig, &job->pose);
+  return TRUE;
 }
 
 /* One number of each point: @at is where it is in the first. */
@@ -409,8 +519,26 @@ report_features (Job * job)
 }
 
 static void
+add_to_take (Job * job)
+{
+  g_autofree const GArray **silhouettes = g_new (const GArray *, job->n);
+  guint n;
+  const ClothTrackedFeature *features =
+      cloth_tracker_get_features (job->tracker, &n);
+
+  for (guint c = 0; c < job->n; c++) {
+    if (job->frame)
+      find_silhouette (job, c);
+    silhouettes[c] = job->films[c].runs;
+  }
+  fit_track_take_add (job->take, find_time (job), features, n, silhouettes);
+}
+
+static void
 report (Job * job)
 {
+  if (job->take)
+    add_to_take (job);
   cloth_json_writer_begin_object (job->json, NULL);
   if (cloth_tracker_kind_is_3d (job->kind))
     report_markers (job);
@@ -436,6 +564,7 @@ write_all (Job * job, GError ** error)
     return FALSE;
   }
   return (!job->csv || cloth_file_write_text (table, job->csv->str, error))
+      && (!job->take || fit_track_take_write (job->take, error))
       && cloth_file_write_text (path, text, error);
 }
 
@@ -455,6 +584,8 @@ track (Job * job, GError ** error)
           job->views, error))
     return FALSE;
   begin_report (job);
+  if (job->arguments->grid && !begin_take (job, error))
+    return FALSE;
   report (job);
   cloth_tracker_get_markers (job->tracker, &n[0]);
   cloth_tracker_get_features (job->tracker, &n[1]);

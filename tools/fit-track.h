@@ -11,6 +11,8 @@ G_BEGIN_DECLS
  * @tracker: name of a tracker
  * @size: "63cm,67cm"
  * @near: (nullable): "x,y", m
+ * @grid: (nullable): "33,35", columns and rows of vertices: a take is written, too
+ * @held: (nullable): "0,32", vertices that hands hold
  * @output: folder
  * @backgrounds: (nullable): a picture for each film
  * @films: one for each camera of the rig, in its order
@@ -20,7 +22,7 @@ G_BEGIN_DECLS
  * @threads: 0: all
  */
 typedef struct {
-  const gchar *rig, *tracker, *size, *near, *output;
+  const gchar *rig, *tracker, *size, *near, *grid, *held, *output;
   gchar **backgrounds, **films;
   gdouble ground;
   gboolean anneal;

@@ -4,6 +4,7 @@
 #include "frames.h"
 
 #include <gio/gio.h>
+#include <math.h>
 #include <gst/app/gstappsink.h>
 #include <gst/gst.h>
 #include <gst/video/video.h>
@@ -160,6 +161,21 @@ cloth_frame_reader_next (ClothFrameReader * reader, ClothImage * image,
     g_set_error (error, G_IO_ERROR, G_IO_ERROR_FAILED, "%s: holds no picture",
         reader->path);
   return FALSE;
+}
+
+/* @reader: a reader whose picture was handed out
+ *
+ * Returns: when that was filmed, from the film's beginning, s; NaN when the file doesn't say
+ */
+gdouble
+cloth_frame_reader_get_time (const ClothFrameReader * reader)
+{
+  const GstBuffer *buffer = gst_sample_get_buffer (reader->sample);
+  const GstClockTime time = gst_segment_to_stream_time
+      (gst_sample_get_segment (reader->sample), GST_FORMAT_TIME,
+      GST_BUFFER_PTS (buffer));
+
+  return GST_CLOCK_TIME_IS_VALID (time) ? (gdouble) time / GST_SECOND : NAN;
 }
 
 /* @path: a picture or a film

@@ -20,6 +20,7 @@ ClothFrameReader *cloth_frame_reader_open (const gchar * path,
 void cloth_frame_reader_free (ClothFrameReader * reader);
 gboolean cloth_frame_reader_next (ClothFrameReader * reader,
     ClothImage * image, GError ** error);
+gdouble cloth_frame_reader_get_time (const ClothFrameReader * reader);
 
 gboolean cloth_frames_read (const gchar * path, guint every,
     ClothFrameFunc function, gpointer user_data, GError ** error);

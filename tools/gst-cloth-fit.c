@@ -29,7 +29,7 @@ typedef struct
   gint seed, threads, evaluations;
   gboolean worker, resume, as_they_come;
   FitTrack track;
-  gchar *tracker, *size, *near;
+  gchar *tracker, *size, *near, *grid, *held;
   gchar **rest;
 } Arguments;
 
@@ -547,6 +547,8 @@ run_track (const Arguments * a)
   track.tracker = a->tracker;
   track.size = a->size;
   track.near = a->near;
+  track.grid = a->grid;
+  track.held = a->held;
   track.output = a->output;
   track.films = a->rest + 1;
   track.seed = a->seed;
@@ -559,10 +561,11 @@ check (const Arguments * a)
 {
   const gboolean searches = a->rest && !strcmp (a->rest[0], "search");
 
-  if (a->tracker || a->size || a->near || a->track.backgrounds
-      || a->track.anneal || a->track.ground != 0)
-    return complain (BAD_USAGE, "--tracker, --pattern-size, --background, "
-        "--ground, --near and --anneal are of the command track");
+  if (a->tracker || a->size || a->near || a->grid || a->held
+      || a->track.backgrounds || a->track.anneal || a->track.ground != 0)
+    return complain (BAD_USAGE,
+        "--tracker, --pattern-size, --background, "
+        "--ground, --near, --grid, --held and --anneal are of the command track");
   if (!a->rest || (strcmp (a->rest[0], "fit") && !searches))
     return complain (BAD_USAGE, "name the command: fit TAKE… --model MODEL "
         "--output DIR, search, or track");
@@ -712,6 +715,13 @@ main (int argc, char **argv)
         "Z"},
     {"near", 0, 0, G_OPTION_ARG_STRING, &a.near,
         "A place near to the print's top left corner, m (track)", "X,Y"},
+    {"grid", 0, 0, G_OPTION_ARG_STRING, &a.grid,
+          "Make DIR a take to fit a cloth to, with so many columns and rows of "
+          "vertices (track)",
+        "COLUMNS,ROWS"},
+    {"held", 0, 0, G_OPTION_ARG_STRING, &a.held,
+          "Vertices of it that hands hold, 0 the print's top left (track)",
+        "VERTEX,…"},
     {"anneal", 0, 0, G_OPTION_ARG_NONE, &a.track.anneal,
         "Find where the cloth lies by simulated annealing (track)", NULL},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.rest, NULL,
@@ -729,6 +739,8 @@ main (int argc, char **argv)
   g_free (a.tracker);
   g_free (a.size);
   g_free (a.near);
+  g_free (a.grid);
+  g_free (a.held);
   g_strfreev (a.track.backgrounds);
   g_strfreev (a.rest);
   return code;

@@ -22,8 +22,10 @@
 #include "gst/fit/recording/recording.h"
 #include "gst/math/band.h"
 
-/* The vertices about a clamp whose places tell of it. */
-#define MOST_ABOUT 64
+/* The vertices about a clamp that are looked at, and of these how many, the nearest that a frame saw, tell of
+ * it. */
+#define MOST_ABOUT 400
+#define MOST_SEEN 64
 /* Clamps whose paths are found at a time; with more, those of the interpolation stand. */
 #define MOST_CLAMPS 4
 /* By how much a knot is moved for a derivative, m. */
@@ -291,7 +293,7 @@ find_off (const Paths * p, guint frame, guint path, guint i, gdouble off[3])
   const gsize at = (gsize) frame * p->r->n + p->about[path * p->n_about + i];
   const gfloat *x = place (p, frame, 0, path, i);
 
-  if (p->r->seen[at] < 1.)
+  if (p->r->seen[at] == 0.)
     return FALSE;
   for (guint c = 0; c < 3; c++)
     off[c] = p->r->y[3 * at + c] - x[c];
@@ -309,11 +311,12 @@ find_square (const Paths * p, gsize * n)
   *n = 0;
   for (guint f = 1; f < p->r->n_frames; f++)
     for (guint path = 0; path < p->n_paths; path++)
-      for (guint i = 0; i < p->n_about; i++) {
+      for (guint i = 0, found = 0; i < p->n_about && found < MOST_SEEN; i++) {
         gdouble off[3];
 
         if (!find_off (p, f, path, i, off))
           continue;
+        found++;
         sum += off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
         ++*n;
       }
@@ -391,11 +394,13 @@ add_all (Paths * p, const gboolean * sound)
   for (guint f = 1; f < p->r->n_frames; f++) {
     list_unknowns (p, f, sound, unknowns);
     for (guint path = 0; path < p->n_paths; path++)
-      for (guint i = 0; i < p->n_about; i++) {
+      for (guint i = 0, found = 0; i < p->n_about && found < MOST_SEEN; i++) {
         gdouble off[3];
 
-        if (find_off (p, f, path, i, off))
-          add_vertex (p, f, path, i, unknowns, off);
+        if (!find_off (p, f, path, i, off))
+          continue;
+        add_vertex (p, f, path, i, unknowns, off);
+        found++;
       }
   }
 }
@@ -441,7 +446,7 @@ solve (Paths * p, gdouble square, gsize n, const gboolean * sound)
 {
   const ClothRecording *r = p->r;
   const gdouble share = 3. * (r->times[r->n_frames - 1] - r->times[0]) /
-      ((r->n_frames - 1) * p->knot_s * p->n_about);
+      ((r->n_frames - 1) * p->knot_s * MIN (p->n_about, MOST_SEEN));
   const gdouble least = 3. * fmax (r->sigma * r->sigma, LOGGED * LOGGED);
   gdouble left = square;
 

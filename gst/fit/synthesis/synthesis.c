@@ -33,14 +33,14 @@ cloth_synthesis_options_init (ClothSynthesisOptions * options)
 }
 
 static ClothRecording *
-record (const ClothSynthesisInput * input, const ClothModel * model,
-    const ClothSynthesisOptions * o, ClothObservedCounts * counts,
-    GError ** error)
+record (const ClothSynthesisInput * input, const ClothScene * found,
+    const ClothModel * model, const ClothSynthesisOptions * o,
+    ClothObservedCounts * counts, GError ** error)
 {
   if (!input->observations)
     return cloth_recording_new (input->take, error);
-  return cloth_recording_new_observed (input->take, input->observations, model,
-      o->gain, &o->rollout, counts, error);
+  return cloth_recording_new_observed (input->take, input->observations, found,
+      model, o->gain, &o->rollout, counts, error);
 }
 
 static gdouble
@@ -291,8 +291,10 @@ look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
     ClothSynthesisTake *take = &s->takes[i];
 
     if (!take->recording || take->counts.places) {
-      cloth_recording_free (take->recording);
-      take->recording = record (&inputs[i], model, o, &take->counts, error);
+      g_autoptr (ClothRecording) before = g_steal_pointer (&take->recording);
+
+      take->recording = record (&inputs[i], before ? before->scene : NULL,
+          model, o, &take->counts, error);
     }
     if (!take->recording
         || !cloth_recording_refine_paths (take->recording, model, o->gain,
