@@ -3,8 +3,8 @@
  * Model: a camera sees a vertex in a direction with an error N (0, s²) all round. Rays that meet
  *   give a place with its covariance; one ray alone gives the inverse covariance
  *   (I − d dᵀ) / (s r)² at the distance r, of rank 2.
- *   Of what no camera located, and of what lies on a lone ray, an outline tells the place along its
- *   normal (outline.c): rank 1 for each camera.
+ *   Of what no camera located, an outline tells the place along its normal (outline.c): rank 1 for
+ *   each camera.
  * Assumption: along a lone ray, and along an outline, the cloth is where a simulation is that all
  *   rays and outlines draw.
  * Formula: places on lone rays and the simulation are found in turn, until a turn moves no place by
@@ -66,7 +66,6 @@ typedef struct
   ClothViews *views;
   ClothRays *rays;
   GArray *lone;
-  gboolean *on_ray;             /* places of which a lone ray tells */
   ClothOutline *outline;        /* NULL: there are no silhouettes */
   gboolean *outlined;           /* places of which only outlines tell */
   gboolean has_paths;           /* of all clamps, from before */
@@ -81,7 +80,6 @@ maker_clear (Maker * m)
   cloth_views_free (m->views);
   cloth_rays_free (m->rays);
   g_clear_pointer (&m->lone, g_array_unref);
-  g_free (m->on_ray);
   g_clear_pointer (&m->outline, cloth_outline_free);
   g_free (m->outlined);
   g_free (m->start);
@@ -117,7 +115,6 @@ maker_init (Maker * m, ClothTake * take, ClothRecording * r,
           r->times[0]) / (r->n_frames - 1));
   m->rays = cloth_rays_new (r->n);
   m->lone = g_array_new (FALSE, FALSE, sizeof (Lone));
-  m->on_ray = g_new0 (gboolean, (gsize) r->n * r->n_frames);
   if (has_silhouettes (observations)) {
     m->outline = cloth_outline_new (r, observations, threads);
     m->outlined = g_new0 (gboolean, (gsize) r->n * r->n_frames);
@@ -229,11 +226,9 @@ find_places (Maker * m, GError ** error)
     memset (lone, 0, m->r->n * sizeof *lone);
     for (guint c = 0; c < m->n_cameras; c++)
       keep_rays (m, f, c, t, lone);
-    for (guint v = 0; v < m->r->n; v++) {
-      m->on_ray[(gsize) f * m->r->n + v] = lone[v].spread > 0.;
+    for (guint v = 0; v < m->r->n; v++)
       if (lone[v].spread > 0.)
         g_array_append_val (m->lone, lone[v]);
-    }
   }
   m->counts->places = (gsize) m->r->n * m->r->n_frames;
   m->counts->single = m->lone->len;
@@ -346,11 +341,10 @@ add_outline (const Maker * m, guint frame, Told * told, GArray * off)
   for (guint v = 0; v < o->n; v++) {
     const gdouble *g = o->gradients + 3 * (gsize) v;
     const gdouble distance = fabs (o->offsets[v]);
-    const gsize at = (gsize) frame * m->r->n + v;
 
     if (!o->counts[v])
       continue;
-    if (m->r->seen[at] > 0. && !m->on_ray[at]) {
+    if (m->r->seen[(gsize) frame * m->r->n + v] > 0.) {
       g_array_append_val (off, distance);
       continue;
     }
@@ -389,34 +383,7 @@ look_at_outlines (const Maker * m, const gdouble * x, GArray * list)
       cloth_median ((gdouble *) off->data, off->len), QUANTISED_PX);
 }
 
-/* A place on a lone ray goes to where the ray and outlines have it: with the ray's Λ, its place y, and x where
- * the outlines were looked for, (Λ + Σ g gᵀ/s²) way = Σ g (δ + gᵀ(x − y))/s². */
-static void
-put_on_both (Maker * m, const Told * told, gdouble px, const gdouble x[3])
-{
-  ClothRecording *r = m->r;
-  const gdouble *g = told->information;
-  gdouble information[6], off[3], pull[3], way[3];
-
-  cloth_vec3_subtract (x, r->y + 3 * told->at, off);
-  for (guint k = 0; k < 3; k++) {
-    const guint a = (k + 1) % 3, b = (k + 2) % 3;
-
-    pull[k] = (told->pull[k] + g[k] * off[k] + g[3 + b] * off[a] +
-        g[3 + a] * off[b]) / (px * px);
-  }
-  for (guint k = 0; k < 6; k++)
-    information[k] = g[k] / (px * px);
-  cloth_recording_noise_add (r->noise, told->at, information);
-  if (!cloth_recording_noise_set (r->noise, told->at, information, 0.))
-    return;
-  cloth_recording_noise_solve (r->noise, told->at, pull, way);
-  cloth_recording_noise_soften (r->noise, told->at, r->sigma);
-  for (guint k = 0; k < 3; k++)
-    r->y[3 * told->at + k] += way[k];
-}
-
-/* Moves a place that nothing else tells of to where outlines have it. */
+/* Moves a place to where outlines have it. */
 static void
 put_on_outlines (Maker * m, const Told * told, gdouble px)
 {
@@ -464,14 +431,8 @@ draw_to_outlines (Maker * m, const gdouble * x)
   for (gsize at = r->n; at < (gsize) r->n * r->n_frames; at++)
     if (r->seen[at] == 0.)
       memcpy (r->y + 3 * at, x + 3 * at, 3 * sizeof (gdouble));
-  for (guint i = 0; i < list->len; i++) {
-    const Told *told = &g_array_index (list, Told, i);
-
-    if (r->seen[told->at] > 0.)
-      put_on_both (m, told, px, x + 3 * told->at);
-    else
-      put_on_outlines (m, told, px);
-  }
+  for (guint i = 0; i < list->len; i++)
+    put_on_outlines (m, &g_array_index (list, Told, i), px);
   cloth_recording_differentiate (r);
 }
 

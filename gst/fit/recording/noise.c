@@ -131,25 +131,6 @@ take_apart (const ClothRecordingNoise * noise, gsize at, gdouble roots[3],
 
 /* @noise: noise
  * @at: which place, one that is set
- * @sigma: usual standard deviation, m
- *
- * Along directions that are known less well than usual the observer draws the place less: as strongly as they
- * are sharp, gain ~ 1/σ, like a steady Kalman filter of a mass under white forces.
- */
-void
-cloth_recording_noise_soften (ClothRecordingNoise * noise, gsize at,
-    gdouble sigma)
-{
-  gdouble roots[3], vectors[9], strengths[3];
-
-  take_apart (noise, at, roots, vectors);
-  for (guint k = 0; k < 3; k++)
-    strengths[k] = fmin (sigma * roots[k], 1.);
-  compose (strengths, vectors, noise->draw + 6 * at);
-}
-
-/* @noise: noise
- * @at: which place, one that is set
  * @pull: Λ times a way, 1/m
  * @way: (out): the shortest such way, m: Λ⁺ @pull
  *

@@ -11,8 +11,6 @@ gboolean cloth_recording_noise_set (ClothRecordingNoise * noise, gsize at,
     const gdouble information[6], gdouble least);
 void cloth_recording_noise_add (const ClothRecordingNoise * noise, gsize at,
     gdouble information[6]);
-void cloth_recording_noise_soften (ClothRecordingNoise * noise, gsize at,
-    gdouble sigma);
 gdouble cloth_recording_noise_solve (const ClothRecordingNoise * noise,
     gsize at, const gdouble pull[3], gdouble way[3]);
 gdouble cloth_recording_noise_finish (ClothRecordingNoise * noise,
