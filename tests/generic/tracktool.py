@@ -105,6 +105,25 @@ with open(out + '/track.json', encoding='utf-8') as file:
 check(done.returncode == 0 and len(told['frames']) == 3 and 'short.avi ends after 3 pictures' in done.stderr,
       'the shortest film ends it, which is said')
 
+# a take of a hand whose path nobody knows, which a cloth can be fitted to
+done = run(*words('lucas-kanade', more=['--grid', '17,18', '--held', '0']))
+coarse = truth.reshape(-1, ROWS, COLUMNS, 3)[:, ::2, ::2].reshape(len(truth), -1, 3)
+arrays = {name: np.load('%s/%s.npy' % (out, name)) for name in ('positions', 'times', 'clamps')}
+check(done.returncode == 0 and len(arrays['times']) == FRAMES and abs(arrays['times'][2] - 0.08) < 1e-3
+      and arrays['clamps'].shape == (1, 1, 3) and np.isnan(arrays['clamps']).all()
+      and np.linalg.norm(arrays['positions'][0] - coarse[0], axis=1).max() < 0.003, 'a take: ' + done.stderr)
+with open(folder + '/model.json', 'w', encoding='utf-8') as file:
+    json.dump({'version': 1, 'areal_density': 0.18, 'stretch': {'warp': 60, 'weft': 60}, 'shear': 15,
+               'bending': {'warp': 2e-5, 'weft': 2e-5}, 'damping': {'mass': 0.5, 'stiffness': 0.001},
+               'free': [{'name': 'damping.mass', 'range': [0.01, 20]}]}, file)
+done = run('fit', out, '--model', folder + '/model.json', '--output', folder + '/fit')
+fitted = np.load(folder + '/fit/take0/positions.npy') if done.returncode == 0 else np.full(coarse[:FRAMES].shape, np.nan)
+off = np.linalg.norm(fitted - coarse[:FRAMES], axis=2)
+hand = np.linalg.norm(np.load(folder + '/fit/take0/clamps.npy')[:, 0] - coarse[:FRAMES, 0], axis=1)
+check(np.sqrt((off ** 2).mean()) < 0.003 and np.sqrt((hand ** 2).mean()) < 0.02,
+      'fitted %.1f mm off, and the hand %.1f mm: %s' % (1e3 * np.sqrt((off ** 2).mean()),
+                                                      1e3 * np.sqrt((hand ** 2).mean()), done.stderr))
+
 texts = []
 for threads in '1', '3':
     run(*words('frames', films=[cut(c, 2, 'two%d.avi' % c) for c in range(4)], more=['--threads', threads]))
@@ -125,6 +144,12 @@ for code, text, line in (
         (2, 'give a length with its unit', words('multi', size='63,67', output=fresh)),
         (2, '--near: give x and y', words('multi', output=fresh, more=['--near', 'left'])),
         (2, '--threads', words('multi', output=fresh, more=['--threads', '-1'])),
+        (2, 'lucas-kanade does', words('multi', output=fresh, more=['--grid', '33,35'])),
+        (2, 'give columns and rows', words('lucas-kanade', output=fresh, more=['--grid', '1,35'])),
+        (2, 'give columns and rows', words('lucas-kanade', output=fresh, more=['--grid', '33x35'])),
+        (2, 'give columns and rows', words('lucas-kanade', output=fresh, more=['--held', '0'])),
+        (2, 'give vertices', words('lucas-kanade', output=fresh, more=['--grid', '3,5', '--held', '15'])),
+        (2, 'give vertices', words('lucas-kanade', output=fresh, more=['--grid', '3,5', '--held', '0,'])),
         (2, 'are not of the command track', words('multi', output=fresh, more=['--model', 'a.json'])),
         (2, 'are of the command track', ['fit', 'take', '--model', 'a.json', '--output', fresh, '--anneal']),
         (1, '4 cameras, and 3 films and 4 backgrounds', words('multi', films=films[:3], output=fresh)),
