@@ -127,7 +127,7 @@ observe_by (gdouble gain, const Scene * s,
   g_autoptr (ClothModel) model = model_new (FALSE);
   const ClothRolloutOptions options = {.threads = 1 };
 
-  return cloth_recording_new_observed (s->take, observations, NULL, model, gain,
+  return cloth_recording_new_observed (s->take, observations, model, gain,
       &options, counts, error);
 }
 
@@ -461,8 +461,8 @@ test_nothing (void)
     g_remove (start);
     large = cloth_take_open (cloth_take_get_folder (s.take), &error);
     g_assert_no_error (error);
-    g_assert_null (cloth_recording_new_observed (large, observations, NULL,
-            model, GAIN, &options, &counts, &error));
+    g_assert_null (cloth_recording_new_observed (large, observations, model,
+            GAIN, &options, &counts, &error));
     g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
     g_assert_nonnull (strstr (error->message, "shorter ones"));
     g_clear_error (&error);

@@ -226,7 +226,7 @@ test_rays (void)
   observations = test_gap_film (rig, rig, positions, times, N_FRAMES, N,
       &filming, 3);
   take = test_gap_forget_positions (g_steal_pointer (&take), TRUE);
-  r = cloth_recording_new_observed (take, observations, NULL, model, 1600.,
+  r = cloth_recording_new_observed (take, observations, model, 1600.,
       &options, &counts, &error);
   g_assert_no_error (error);
   g_assert_true (cloth_recording_refine_paths (r, model, 1600., &options,

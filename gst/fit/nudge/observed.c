@@ -68,7 +68,6 @@ typedef struct
   GArray *lone;
   ClothOutline *outline;        /* NULL: there are no silhouettes */
   gboolean *outlined;           /* places of which only outlines tell */
-  gboolean has_paths;           /* of all clamps, from before */
   gfloat *start;                /* where the take says that the cloth starts, NaN where not; or NULL */
   ClothObservedCounts *counts;
 } Maker;
@@ -104,8 +103,7 @@ maker_init (Maker * m, ClothTake * take, ClothRecording * r,
   const ClothRig *rig = observations->rig;
 
   *m = (Maker) {
-  observations, r,.n_cameras = rig->n_cameras,.has_paths =
-        r->scene->clamps_sd != NULL,.counts = counts};
+  observations, r,.n_cameras = rig->n_cameras,.counts = counts};
   if (cloth_take_get_n_positions (take) > 0) {
     m->start = g_new (gfloat, 3 * (gsize) r->n);
     if (!cloth_take_read_positions (take, 0, m->start, error))
@@ -321,12 +319,13 @@ finish (Maker * m, GError ** error)
 
   r->sigma = cloth_recording_noise_finish (r->noise, r->seen);
   m->counts->torn = cloth_recording_remove_torn (r);
+  cloth_recording_open_paths (r);
   cloth_recording_interpolate (r);
   /* rather than what cameras made of it */
   for (gsize i = 0; m->start && i < 3 * (gsize) r->n; i++)
     if (isfinite (m->start[i]))
       r->y[i] = m->start[i];
-  if (!m->has_paths && !cloth_recording_find_paths (r, error))
+  if (!cloth_recording_find_paths (r, error))
     return FALSE;
   cloth_recording_differentiate (r);
   return TRUE;
@@ -489,7 +488,7 @@ find_share_along (const Maker * m)
 }
 
 static ClothRecording *
-recording_new (ClothTake * take, const ClothScene * found, GError ** error)
+recording_new (ClothTake * take, GError ** error)
 {
   g_autoptr (ClothRecording) r = g_new0 (ClothRecording, 1);
   gsize all;
@@ -514,13 +513,6 @@ recording_new (ClothTake * take, const ClothScene * found, GError ** error)
   r->scene = cloth_scene_new_with_open_paths (take, error);
   if (!r->scene)
     return NULL;
-  if (found && found->clamps_sd) {
-    const gsize places = (gsize) r->n_frames * r->scene->held->len;
-
-    memcpy (r->scene->clamps, found->clamps, 3 * places * sizeof (gdouble));
-    r->scene->clamps_sd = g_memdup2 (found->clamps_sd,
-        places * sizeof (gdouble));
-  }
   r->times = g_new (gdouble, r->n_frames);
   for (guint f = 0; f < r->n_frames; f++)
     r->times[f] = cloth_take_get_time (take, f);
@@ -533,7 +525,6 @@ recording_new (ClothTake * take, const ClothScene * found, GError ** error)
 
 /* @take: mesh, clamps and times; its positions, if it has any, are where the cloth starts
  * @observations: what cameras saw of it, any number of them
- * @found: (nullable): the scene of an earlier recording of it, where paths that nobody logged were found
  * @model: what the simulator knows of the cloth
  * @gain: of the observer, 1/s²
  * @options: how to simulate
@@ -547,12 +538,11 @@ recording_new (ClothTake * take, const ClothScene * found, GError ** error)
  */
 ClothRecording *
 cloth_recording_new_observed (ClothTake * take,
-    const ClothObservations * observations, const ClothScene * found,
-    const ClothModel * model, gdouble gain,
-    const ClothRolloutOptions * options, ClothObservedCounts * counts,
-    GError ** error)
+    const ClothObservations * observations, const ClothModel * model,
+    gdouble gain, const ClothRolloutOptions * options,
+    ClothObservedCounts * counts, GError ** error)
 {
-  g_autoptr (ClothRecording) r = recording_new (take, found, error);
+  g_autoptr (ClothRecording) r = recording_new (take, error);
   g_auto (Maker) m = { NULL };
   g_autofree gdouble *x = NULL;
 

@@ -31,8 +31,8 @@ typedef struct {
 } ClothObservedCounts;
 
 ClothRecording *cloth_recording_new_observed (ClothTake * take,
-    const ClothObservations * observations, const ClothScene * found,
-    const ClothModel * model, gdouble gain, const ClothRolloutOptions * options,
+    const ClothObservations * observations, const ClothModel * model,
+    gdouble gain, const ClothRolloutOptions * options,
     ClothObservedCounts * counts, GError ** error);
 
 G_END_DECLS

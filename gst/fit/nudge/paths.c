@@ -1,12 +1,12 @@
 /* Paths of clamps that nobody logged, as the cloth that hangs from them has them.
  *
  * Model: a path is off that of cloth_recording_find_paths () by δ(t) = Σ_k c_k B((t − t_k)/Δ), cubic
- *   B-splines of the knots t_k, c_k ~ N(0, s_k²), s_k as well as the path is known about its knot. The
+ *   B-splines of the knots t_k, δ of each frame N(0, s²), s as well as the path was known there. The
  *   simulation that springs of the gain g draw to what was seen is off it, about the clamp, by
  *   e + J c + N(0, v).
  * Assumption: vertices about a clamp are off together, and as long as springs remember, so those of the
  *   frames between two knots count as one; what springs did 3/(ζ√g) ago is forgotten. Where a clamp takes the cloth is linear in small c.
- * Formula: c = (JᵀJ/v + diag s_k⁻²)⁻¹ Jᵀe/v, v the mean square that is left (Gauss–Newton). Knots that
+ * Formula: c = (JᵀJ/v + BᵀS⁻¹B)⁻¹ (Jᵀe/v − BᵀS⁻¹δ), v the variance that is left (Gauss–Newton). Knots that
  *   far apart have nothing to do with each other, so one simulation moves many at a time: every sixth.
  * Reference: Hasler, Asbach, Rosenhahn, Ohm and Seidel, Physically based tracking of cloth, 2006,
  *   section 5 (places of constrained points as unknowns); Curtis, Powell and Reid 1974 (columns of a banded
@@ -21,11 +21,14 @@
 #include "gst/fit/error.h"
 #include "gst/fit/recording/recording.h"
 #include "gst/math/band.h"
+#include "gst/math/vec3.h"
 
 /* The vertices about a clamp that are looked at, and of these how many, the nearest that a frame saw, tell of
  * it. */
 #define MOST_ABOUT 400
 #define MOST_SEEN 64
+/* Numbers that are kept of them: 1 GB. */
+#define MOST_NUMBERS 268435456.
 /* Clamps whose paths are found at a time; with more, those of the interpolation stand. */
 #define MOST_CLAMPS 4
 /* By how much a knot is moved for a derivative, m. */
@@ -40,6 +43,8 @@
 /* Time constants after which springs have forgotten, and how far a B-spline reaches to a side, knots. */
 #define FORGOTTEN 3.
 #define REACH 2.
+/* Of so many knots at a time. */
+#define N_KNOTS 5
 /* Frames between two knots, at least. */
 #define FRAMES 3.
 
@@ -51,13 +56,14 @@ typedef struct
   guint n_about;
   guint32 *about;               /* vertices about each, [n_paths][n_about] */
   guint n_knots, period;        /* every period-th knot is moved at a time */
-  gdouble knot_s;
+  gdouble knot_s, frame_s;      /* between knots, and frames */
   guint n_models;               /* simulations: as it is, then 3·n_paths·period */
   gfloat *places;               /* of the vertices about, [n_frames][n_models][n_paths·n_about][3] */
     gdouble (*slopes)[3];       /* of a vertex, by model */
   /* unknowns: [n_knots][n_paths][3], matrices banded */
   gdouble *data, *right;        /* JᵀJ and Jᵀe */
-  gdouble *precisions;          /* of the priors */
+  gdouble square, n_told;       /* sum of squares, and of how many vertices it is */
+  gdouble *first;               /* the paths as they were found, [n_frames][held][3] */
   gdouble *normal;              /* factor of the normal equations */
   gdouble *change;              /* c */
 } Paths;
@@ -71,7 +77,7 @@ paths_clear (Paths * p)
   g_free (p->slopes);
   g_free (p->data);
   g_free (p->right);
-  g_free (p->precisions);
+  g_free (p->first);
   g_free (p->normal);
   g_free (p->change);
 }
@@ -125,6 +131,15 @@ weight_at (const Paths * p, guint knot, guint frame)
   return spline ((p->r->times[frame] - knot_time (p, knot)) / p->knot_s);
 }
 
+/* The first of the knots whose B-splines reach a frame. */
+static guint
+first_knot (const Paths * p, guint frame)
+{
+  const gdouble at = (p->r->times[frame] - p->r->times[0]) / p->knot_s + 1.;
+
+  return (guint) fmax (ceil (at - REACH), 0.);
+}
+
 typedef struct
 {
   gdouble square;
@@ -161,6 +176,18 @@ find_about (Paths * p, guint path)
     p->about[path * p->n_about + i] = near[i].vertex;
 }
 
+/* Vertices that are held at any time. */
+static guint
+count_held (const ClothScene * scene)
+{
+  g_autoptr (GHashTable) held = g_hash_table_new (NULL, NULL);
+
+  for (guint i = 0; i < scene->held->len; i++)
+    g_hash_table_add (held, GUINT_TO_POINTER (g_array_index (scene->held,
+                ClothHeld, i).vertex));
+  return g_hash_table_size (held);
+}
+
 /* FALSE when there is nothing to look for. */
 static gboolean
 paths_init (Paths * p, ClothRecording * r, gdouble gain)
@@ -170,8 +197,7 @@ paths_init (Paths * p, ClothRecording * r, gdouble gain)
   const gdouble span = r->times[r->n_frames - 1] - r->times[0];
 
   *p = (Paths) {
-    r,.n_about = MIN (MOST_ABOUT, r->n - scene->held->len)
-  };
+  r};
   p->paths = g_new (guint, scene->held->len + 1);
   for (guint i = 0; i < scene->held->len && scene->clamps_sd; i++)
     for (guint f = 0; f < r->n_frames; f++)
@@ -179,22 +205,29 @@ paths_init (Paths * p, ClothRecording * r, gdouble gain)
         p->paths[p->n_paths++] = i;
         break;
       }
-  if (p->n_paths == 0 || p->n_paths > MOST_CLAMPS || p->n_about == 0)
+  if (p->n_paths == 0 || p->n_paths > MOST_CLAMPS)
+    return FALSE;
+  p->frame_s = span / (r->n_frames - 1);
+  p->knot_s = fmax (2. * forgets_s, FRAMES * p->frame_s);
+  p->period = (guint) ceil (2. * REACH + FORGOTTEN * forgets_s / p->knot_s);
+  p->n_knots = (guint) ceil (span / p->knot_s) + 3;
+  p->n_models = 1 + unknowns_of_knot (p) * p->period;
+  p->n_about = (guint) MIN (MIN (MOST_ABOUT, MOST_NUMBERS /
+          (3. * r->n_frames * p->n_models * p->n_paths)),
+      r->n - count_held (scene));
+  if (p->n_about == 0)
     return FALSE;
   p->about = g_new (guint32, p->n_paths * p->n_about);
   for (guint i = 0; i < p->n_paths; i++)
     find_about (p, i);
-  p->knot_s = fmax (2. * forgets_s, FRAMES * span / (r->n_frames - 1));
-  p->period = (guint) ceil (2. * REACH + FORGOTTEN * forgets_s / p->knot_s);
-  p->n_knots = (guint) ceil (span / p->knot_s) + 3;
-  p->n_models = 1 + unknowns_of_knot (p) * p->period;
   p->places = g_new (gfloat, 3 * (gsize) r->n_frames * p->n_models *
       p->n_paths * p->n_about);
   p->slopes = g_malloc (p->n_models * sizeof *p->slopes);
   p->data = g_new (gdouble, n_band (p));
   p->normal = g_new (gdouble, n_band (p));
   p->right = g_new (gdouble, n_unknowns (p));
-  p->precisions = g_new (gdouble, n_unknowns (p));
+  p->first = g_memdup2 (scene->clamps, 3 * (gsize) r->n_frames *
+      scene->held->len * sizeof (gdouble));
   p->change = g_new (gdouble, n_unknowns (p));
   return TRUE;
 }
@@ -293,7 +326,7 @@ find_off (const Paths * p, guint frame, guint path, guint i, gdouble off[3])
   const gsize at = (gsize) frame * p->r->n + p->about[path * p->n_about + i];
   const gfloat *x = place (p, frame, 0, path, i);
 
-  if (p->r->seen[at] == 0.)
+  if (p->r->seen[at] < 1.)
     return FALSE;
   for (guint c = 0; c < 3; c++)
     off[c] = p->r->y[3 * at + c] - x[c];
@@ -301,39 +334,36 @@ find_off (const Paths * p, guint frame, guint path, guint i, gdouble off[3])
   return TRUE;
 }
 
-/* Mean square by which vertices about clamps are seen off the simulation, m², and of how many; 0 when
- * none is seen. */
-static gdouble
-find_square (const Paths * p, gsize * n)
+/* What a frame saw about a clamp, nearest first. Returns how many vertices. */
+static guint
+list_seen (const Paths * p, guint frame, guint path, guint * list,
+    gdouble (*off)[3])
 {
-  gdouble sum = 0.;
+  guint n = 0;
 
-  *n = 0;
-  for (guint f = 1; f < p->r->n_frames; f++)
-    for (guint path = 0; path < p->n_paths; path++)
-      for (guint i = 0, found = 0; i < p->n_about && found < MOST_SEEN; i++) {
-        gdouble off[3];
-
-        if (!find_off (p, f, path, i, off))
-          continue;
-        found++;
-        sum += off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
-        ++*n;
-      }
-  return *n ? sum / *n : 0.;
+  for (guint i = 0; i < p->n_about && n < MOST_SEEN; i++)
+    if (find_off (p, frame, path, i, off[n]))
+      list[n++] = i;
+  return n;
 }
 
-/* How well the path is known about a knot. */
+/* Mean square by which vertices about clamps are seen off the simulation, m²; 0 when none is seen. */
 static gdouble
-find_sd (const Paths * p, guint knot, guint path)
+find_square (const Paths * p)
 {
-  gdouble sd = INFINITY;
+  guint list[MOST_SEEN];
+  gdouble off[MOST_SEEN][3], sum = 0.;
+  gsize n = 0;
 
-  for (guint f = 0; f < p->r->n_frames; f++)
-    if (weight_at (p, knot, f) > 0.)
-      sd = fmin (sd, p->r->scene->clamps_sd[(gsize) f *
-              p->r->scene->held->len + p->paths[path]]);
-  return isfinite (sd) ? fmax (sd, LOGGED) : LOGGED;
+  for (guint f = 1; f < p->r->n_frames; f++)
+    for (guint path = 0; path < p->n_paths; path++) {
+      const guint seen = list_seen (p, f, path, list, off);
+
+      for (guint i = 0; i < seen; i++)
+        sum += cloth_vec3_dot (off[i], off[i]);
+      n += seen;
+    }
+  return n ? sum / n : 0.;
 }
 
 /* Which unknown each model but the first shows in a frame, or -1. */
@@ -350,10 +380,10 @@ list_unknowns (const Paths * p, guint frame, const gboolean * sound,
   }
 }
 
-/* Adds what one vertex tells: Jᵀe and JᵀJ. */
+/* Adds what one vertex tells, @share times: Jᵀe and JᵀJ. */
 static void
 add_vertex (Paths * p, guint frame, guint path, guint i, const gint * unknowns,
-    const gdouble off[3])
+    gdouble share, const gdouble off[3])
 {
   const gsize at = (gsize) frame * p->r->n + p->about[path * p->n_about + i];
   const gfloat *x = place (p, frame, 0, path, i);
@@ -370,7 +400,7 @@ add_vertex (Paths * p, guint frame, guint path, guint i, const gint * unknowns,
     if (unknowns[m] < 0)
       continue;
     for (guint c = 0; c < 3; c++)
-      p->right[unknowns[m]] += slopes[m][c] * off[c];
+      p->right[unknowns[m]] += share * slopes[m][c] * off[c];
     for (guint o = 1; o < p->n_models; o++) {
       gdouble product = 0.;
 
@@ -378,45 +408,80 @@ add_vertex (Paths * p, guint frame, guint path, guint i, const gint * unknowns,
         continue;
       for (guint c = 0; c < 3; c++)
         product += slopes[m][c] * slopes[o][c];
-      CLOTH_BAND (p->data, bandwidth (p), unknowns[m], unknowns[o]) += product;
+      CLOTH_BAND (p->data, bandwidth (p), unknowns[m], unknowns[o]) +=
+          share * product;
     }
   }
 }
 
-/* What all that was seen tells. */
+/* What all that was seen tells: those of the frames between two knots count as one vertex. */
 static void
 add_all (Paths * p, const gboolean * sound)
 {
   g_autofree gint *unknowns = g_new (gint, p->n_models);
+  guint list[MOST_SEEN];
+  gdouble off[MOST_SEEN][3];
 
   memset (p->data, 0, n_band (p) * sizeof *p->data);
   memset (p->right, 0, n_unknowns (p) * sizeof *p->right);
+  p->square = p->n_told = 0.;
   for (guint f = 1; f < p->r->n_frames; f++) {
     list_unknowns (p, f, sound, unknowns);
-    for (guint path = 0; path < p->n_paths; path++)
-      for (guint i = 0, found = 0; i < p->n_about && found < MOST_SEEN; i++) {
-        gdouble off[3];
+    for (guint path = 0; path < p->n_paths; path++) {
+      const guint n = list_seen (p, f, path, list, off);
+      const gdouble share = p->frame_s / (p->knot_s * MAX (n, 1));
 
-        if (!find_off (p, f, path, i, off))
-          continue;
-        add_vertex (p, f, path, i, unknowns, off);
-        found++;
+      for (guint i = 0; i < n; i++) {
+        add_vertex (p, f, path, list[i], unknowns, share, off[i]);
+        p->square += share * cloth_vec3_dot (off[i], off[i]);
+        p->n_told += share;
       }
+    }
   }
+}
+
+/* The prior: δ of each frame N(0, sd²), those between two knots as one; about the paths that were found first. */
+static void
+add_prior (Paths * p)
+{
+  const guint each = unknowns_of_knot (p);
+  const guint n_held = p->r->scene->held->len;
+
+  for (guint f = 0; f < p->r->n_frames; f++)
+    for (guint path = 0; path < p->n_paths; path++) {
+      const gsize at = (gsize) f * n_held + p->paths[path];
+      const gdouble sd = fmax (p->r->scene->clamps_sd[at], LOGGED);
+      const gdouble share = p->frame_s / (p->knot_s * sd * sd);
+      guint first = first_knot (p, f);
+
+      for (guint k = first; k < MIN (first + N_KNOTS, p->n_knots); k++)
+        for (guint c = 0; c < 3; c++) {
+          const guint i = k * each + 3 * path + c;
+          const gdouble weight = share * weight_at (p, k, f);
+
+          p->change[i] -= weight * (p->r->scene->clamps[3 * at + c] -
+              p->first[3 * at + c]);
+          for (guint l = first; l <= k; l++)
+            CLOTH_BAND (p->normal, bandwidth (p), i, l * each + 3 * path +
+                c) += weight * weight_at (p, l, f);
+        }
+    }
 }
 
 /* c for the variance v of what is left; FALSE when nothing tells of it. */
 static gboolean
-solve_for (Paths * p, gdouble square, gdouble share)
+solve_for (Paths * p, gdouble variance)
 {
   const guint all = n_unknowns (p);
 
   for (gsize k = 0; k < n_band (p); k++)
-    p->normal[k] = share / square * p->data[k];
+    p->normal[k] = p->data[k] / variance;
   for (guint k = 0; k < all; k++) {
-    CLOTH_BAND (p->normal, bandwidth (p), k, k) += p->precisions[k];
-    p->change[k] = share / square * p->right[k];
+    p->change[k] = p->right[k] / variance;
+    /* knots beyond the ends */
+    CLOTH_BAND (p->normal, bandwidth (p), k, k) += 1. / (p->knot_s * p->knot_s);
   }
+  add_prior (p);
   if (!cloth_band_factor (all, bandwidth (p), p->normal))
     return FALSE;
   cloth_band_solve (all, bandwidth (p), p->normal, 1, p->change);
@@ -440,29 +505,25 @@ find_gain (const Paths * p)
 }
 
 /* The change of all unknowns, with the variance that it leaves itself: a path that is far off is no noise.
- * @square is the mean square of @n vertices. FALSE when nothing tells of it. */
+ * FALSE when nothing tells of it. */
 static gboolean
-solve (Paths * p, gdouble square, gsize n, const gboolean * sound)
+solve (Paths * p, const gboolean * sound)
 {
   const ClothRecording *r = p->r;
-  const gdouble share = 3. * (r->times[r->n_frames - 1] - r->times[0]) /
-      ((r->n_frames - 1) * p->knot_s * MIN (p->n_about, MOST_SEEN));
-  const gdouble least = 3. * fmax (r->sigma * r->sigma, LOGGED * LOGGED);
-  gdouble left = square;
+  const gdouble least = fmax (r->sigma * r->sigma, LOGGED * LOGGED);
+  gdouble left;
 
   add_all (p, sound);
-  for (guint k = 0; k < n_unknowns (p); k++) {
-    const gdouble sd = find_sd (p, k / unknowns_of_knot (p),
-        k % unknowns_of_knot (p) / 3);
-
-    p->precisions[k] = 1. / (sd * sd);
-  }
+  if (!(p->n_told > 0.))
+    return FALSE;
+  /* of a coordinate */
+  left = fmax (p->square / (3. * p->n_told), least);
   for (guint turn = 0; turn < MOST_TURNS; turn++) {
     const gdouble before = left;
 
-    if (!solve_for (p, left, share))
+    if (!solve_for (p, left))
       return FALSE;
-    left = fmax (square - find_gain (p) / n, least);
+    left = fmax ((p->square - find_gain (p)) / (3. * p->n_told), least);
     if (fabs (left - before) < 0.01 * before)
       break;
   }
@@ -491,28 +552,39 @@ move (Paths * p)
   return sqrt (sum / (p->r->n_frames * p->n_paths));
 }
 
-/* How well the paths are known now: the B-splines' variances, as if they were apart. */
+/* How well the paths are known after a step, into @sd: at least as well as @p's B-splines, if these were all off
+ * alike, and as before. */
 static void
-find_deviations (Paths * p)
+find_deviations (Paths * p, gdouble * sd)
 {
-  const guint each = unknowns_of_knot (p), all = p->n_knots * each;
+  const guint each = unknowns_of_knot (p), all = n_unknowns (p);
   const guint n_held = p->r->scene->held->len;
-  g_autofree gdouble *work = g_new (gdouble, (gsize) all * (bandwidth (p) + 1));
+  g_autofree gdouble *work = g_new (gdouble, n_band (p));
   g_autofree gdouble *variances = g_new (gdouble, all);
 
   cloth_band_inverse_diagonal (all, bandwidth (p), p->normal, work, variances);
   for (guint f = 0; f < p->r->n_frames; f++)
     for (guint path = 0; path < p->n_paths; path++) {
-      gdouble *sd = &p->r->scene->clamps_sd[(gsize) f * n_held +
-          p->paths[path]];
+      const gsize at = (gsize) f * n_held + p->paths[path];
+      const guint first = first_knot (p, f);
       gdouble sum = 0.;
 
-      for (guint k = 0; k < all; k++)
-        if (k % each / 3 == path)
-          sum += pow (weight_at (p, k / each, f), 2.) * variances[k] / 3.;
-      if (*sd > 0.)
-        *sd = fmax (sqrt (sum), LOGGED);
+      for (guint k = first; k < MIN (first + N_KNOTS, p->n_knots); k++) {
+        const gdouble *v = variances + k * each + 3 * path;
+
+        sum += weight_at (p, k, f) * sqrt ((v[0] + v[1] + v[2]) / 3.);
+      }
+      sd[at] = fmin (p->r->scene->clamps_sd[at], fmax (sum, LOGGED));
     }
+}
+
+/* What goes with the paths: places that nobody saw, and how fast all are. */
+static void
+take_along (ClothRecording * r)
+{
+  cloth_recording_interpolate (r);
+  cloth_recording_place_held (r);
+  cloth_recording_differentiate (r);
 }
 
 /* @recording: a recording
@@ -531,20 +603,20 @@ cloth_recording_refine_paths (ClothRecording * recording,
     const ClothModel * model, gdouble gain,
     const ClothRolloutOptions * options, GError ** error)
 {
-  const gsize size = 3 * (gsize) recording->n_frames *
-      recording->scene->held->len * sizeof (gdouble);
+  ClothScene *scene = recording->scene;
+  const gsize places = (gsize) recording->n_frames * scene->held->len;
+  const gsize size = 3 * places * sizeof (gdouble);
   g_auto (Paths) p = { NULL };
   g_autofree gboolean *sound = NULL;
-  g_autofree gdouble *best = NULL;
+  g_autofree gdouble *best = NULL, *sd = NULL;
   gdouble least = INFINITY, moved = INFINITY;
-  gboolean solved = FALSE;
-  gsize n;
   GError *stopped = NULL;
 
   if (!paths_init (&p, recording, gain))
     return TRUE;
   sound = g_new (gboolean, p.n_models);
-  best = g_memdup2 (recording->scene->clamps, size);
+  best = g_memdup2 (scene->clamps, size);
+  sd = g_memdup2 (scene->clamps_sd, places * sizeof (gdouble));
   for (guint pass = 0; pass <= MOST_PASSES; pass++) {
     const gboolean is_last = pass == MOST_PASSES || moved < SETTLED;
     gdouble square;
@@ -552,22 +624,20 @@ cloth_recording_refine_paths (ClothRecording * recording,
     if (!simulate (&p, model, gain, is_last ? 1 : p.n_models, options, sound,
             &stopped))
       break;
-    square = find_square (&p, &n);
+    square = find_square (&p);
     if (!(square > 0.) || !(square < least))
       break;
+    if (pass > 0)
+      find_deviations (&p, sd);
     least = square;
-    memcpy (best, recording->scene->clamps, size);
-    if (is_last)
-      break;
-    solved = solve (&p, square, n, sound);
-    if (!solved)
+    memcpy (best, scene->clamps, size);
+    if (is_last || !solve (&p, sound))
       break;
     moved = move (&p);
   }
-  memcpy (recording->scene->clamps, best, size);
-  if (solved)
-    find_deviations (&p);
-  cloth_recording_place_held (recording);
+  memcpy (scene->clamps, best, size);
+  memcpy (scene->clamps_sd, sd, places * sizeof (gdouble));
+  take_along (recording);
   if (stopped)
     g_propagate_error (error, stopped);
   return !stopped;

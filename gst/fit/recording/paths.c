@@ -22,7 +22,7 @@
 
 /* Frames of a divided difference, and how far apart the numbers are that it links. */
 #define N_DIFFERENCE 4
-#define BANDWIDTH (3 * N_DIFFERENCE - 1)
+#define BANDWIDTH (3 * (N_DIFFERENCE - 1))
 /* Powers that are tried, m²/s⁵: from a clamp that hardly moves to one that is thrown about. */
 #define LEAST_POWER 1e-6
 #define MOST_POWER 1e8
@@ -39,7 +39,7 @@ typedef struct
   gdouble *y;                   /* off the origin, [n][3] */
   gdouble *differences;         /* of each row of D³ its factors by √Δt, [n − 3][4] */
   gdouble *factor;              /* of A */
-  gdouble *unsure;              /* how far off each may be that was not seen, or on a ray, m; else 0 */
+  gdouble *unsure;              /* how far off each may be that was not located, m; else 0, [n] */
   gdouble *z, *right;           /* and Λ y, [n][3] */
 } Path;
 
@@ -57,20 +57,45 @@ path_clear (Path * path)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Path, path_clear);
 
-/* How far on the flat cloth the nearest other vertex is that a frame saw, m; ∞: it saw none. */
+static gboolean
+is_held (const ClothRecording * r, guint held, guint frame)
+{
+  const ClothHeld *h = &g_array_index (r->scene->held, ClothHeld, held);
+
+  return r->times[frame] >= h->from_s && r->times[frame] < h->until_s;
+}
+
+/* Whether a place is known in all directions. */
+static gboolean
+is_known (const ClothRecording * r, gsize at)
+{
+  const gdouble *draw = r->noise ? r->noise->draw + 6 * at : NULL;
+
+  return r->seen[at] == 1. && (!draw || draw[0] + draw[1] + draw[2] > 2.5);
+}
+
+/* How far on the flat cloth the nearest other vertex is that a frame saw, m, ∞ when it saw none; and that it
+ * located, into @known, the cloth's size when it located none. */
 static gdouble
-find_distance (const ClothRecording * r, guint frame, guint vertex)
+find_distance (const ClothRecording * r, guint frame, guint vertex,
+    gdouble * known)
 {
   const gfloat *uv = r->scene->topology->uv;
-  gdouble nearest = INFINITY;
+  gdouble nearest = INFINITY, furthest = ROUNDING;
 
+  *known = INFINITY;
   for (guint v = 0; v < r->n; v++) {
-    const gdouble distance = hypot (uv[2 * v] - uv[2 * vertex],
-        uv[2 * v + 1] - uv[2 * vertex + 1]);
+    const gsize at = (gsize) frame * r->n + v;
+    const gdouble distance = fmax (hypot (uv[2 * v] - uv[2 * vertex],
+            uv[2 * v + 1] - uv[2 * vertex + 1]), ROUNDING);
 
-    if (v != vertex && r->seen[(gsize) frame * r->n + v] > 0.)
+    furthest = fmax (furthest, distance);
+    if (v != vertex && r->seen[at] > 0.)
       nearest = fmin (nearest, distance);
+    if (v != vertex && is_known (r, at))
+      *known = fmin (*known, distance);
   }
+  *known = fmin (*known, furthest);
   return nearest;
 }
 
@@ -137,22 +162,31 @@ find_data (Path * p, guint held)
     const gsize at = (gsize) f * r->n + vertex;
     const gsize k = (gsize) f * scene->held->len + held;
     const gboolean logged = scene->clamps_sd[k] == 0.;
-    gdouble *to = p->information + 6 * (gsize) f;
+    gdouble *to = p->information + 6 * (gsize) f, near;
 
     cloth_vec3_subtract (logged ? scene->clamps + 3 * k : r->y + 3 * at,
         p->origin, p->y + 3 * (gsize) f);
     memset (to, 0, 6 * sizeof *to);
     p->unsure[f] = 0.;
+    if (!is_held (r, held, f))
+      continue;
     if (logged) {
       add_even (to, 1. / (ROUNDING * ROUNDING));
       n++;
       continue;
     }
-    if (r->seen[at] == 0. || !add_seen (r, at, to))
-      p->unsure[f] = find_distance (r, f, vertex);
-    if (r->seen[at] == 0.)
-      add_even (to, 1. / (p->unsure[f] * p->unsure[f]));
-    n += isfinite (p->unsure[f]);
+    if (r->seen[at] > 0.) {
+      if (!add_seen (r, at, to))
+        find_distance (r, f, vertex, &p->unsure[f]);
+      n++;
+      continue;
+    }
+    /* it may be off its neighbours by so much, and these where they are */
+    near = find_distance (r, f, vertex, &p->unsure[f]);
+    if (isfinite (near)) {
+      add_even (to, 1. / (near * near));
+      n++;
+    }
   }
   return n;
 }
@@ -242,13 +276,13 @@ find_path (Path * p, guint held, GError ** error)
     const gsize k = (gsize) f * n_held + held;
     const gdouble *v = variances + 3 * (gsize) f;
 
-    if (scene->clamps_sd[k] == 0.)
+    if (scene->clamps_sd[k] == 0. || !is_held (r, held, f))
       continue;
     for (guint c = 0; c < 3; c++)
       scene->clamps[3 * k + c] = p->origin[c] + p->z[3 * (gsize) f + c];
     /* interpolations are off by about the same for long, which no mean over frames makes less */
     scene->clamps_sd[k] = hypot (sqrt ((v[0] + v[1] + v[2]) / 3.),
-        isfinite (p->unsure[f]) ? p->unsure[f] : 0.);
+        p->unsure[f]);
   }
   return TRUE;
 }
@@ -271,16 +305,41 @@ cloth_recording_place_held (ClothRecording * recording)
     if (r->scene->clamps_sd[k] > 0. && r->seen[at] == 0.
         && r->times[f] >= h->from_s && r->times[f] < h->until_s)
       memcpy (r->y + 3 * at, r->scene->clamps + 3 * k, 3 * sizeof *r->y);
-    if (f == 0 && r->scene->clamps_sd[k] > 0.)
+    if (f == 0 && r->scene->clamps_sd[k] > 0. && is_held (r, k % held->len, 0))
       memcpy (r->scene->positions + 3 * (gsize) h->vertex,
           r->scene->clamps + 3 * k, 3 * sizeof *r->y);
   }
 }
 
+/* Whether nobody logged the place of a clamp while it held. */
+static gboolean
+is_open (const ClothRecording * r, gsize k)
+{
+  const guint n_held = r->scene->held->len;
+
+  return isnan (r->scene->clamps[3 * k])
+      && is_held (r, k % n_held, (guint) (k / n_held));
+}
+
+/* @recording: a recording
+ *
+ * Forgets the paths that were found, so that they can be found anew.
+ */
+void
+cloth_recording_open_paths (ClothRecording * recording)
+{
+  ClothScene *scene = recording->scene;
+
+  for (gsize k = 0; scene->clamps_sd
+      && k < (gsize) recording->n_frames * scene->held->len; k++)
+    for (guint c = 0; scene->clamps_sd[k] > 0. && c < 3; c++)
+      scene->clamps[3 * k + c] = NAN;
+}
+
 /* @recording: a recording whose @y is known all over
  * @error: #ClothFitError when it can't be found
  *
- * Finds the paths of clamps where the scene's are NaN, or were found before, and how well they are known.
+ * Finds the paths of clamps where the scene's are NaN, and how well they are known.
  * Held vertices that nobody saw are put there.
  *
  * Returns: %FALSE when a path can't be found
@@ -297,15 +356,14 @@ cloth_recording_find_paths (ClothRecording * recording, GError ** error)
   gboolean any = FALSE;
 
   for (gsize k = 0; k < all; k++)
-    if (isnan (scene->clamps[3 * k]) || (scene->clamps_sd
-            && scene->clamps_sd[k] > 0.))
+    if (is_open (recording, k))
       open[k % n_held] = any = TRUE;
   if (!any)
     return TRUE;
   if (!scene->clamps_sd)
     scene->clamps_sd = g_new0 (gdouble, all);
   for (gsize k = 0; k < all; k++)
-    if (isnan (scene->clamps[3 * k]))
+    if (is_open (recording, k))
       scene->clamps_sd[k] = INFINITY;
   p.information = g_new (gdouble, 6 * (gsize) n);
   p.y = g_new (gdouble, 3 * (gsize) n);

@@ -9,6 +9,7 @@ G_BEGIN_DECLS
 
 gboolean cloth_recording_find_paths (ClothRecording * recording,
     GError ** error);
+void cloth_recording_open_paths (ClothRecording * recording);
 void cloth_recording_place_held (ClothRecording * recording);
 
 G_END_DECLS

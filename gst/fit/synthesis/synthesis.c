@@ -33,14 +33,14 @@ cloth_synthesis_options_init (ClothSynthesisOptions * options)
 }
 
 static ClothRecording *
-record (const ClothSynthesisInput * input, const ClothScene * found,
-    const ClothModel * model, const ClothSynthesisOptions * o,
+record (const ClothSynthesisInput * input, const ClothModel * model,
+    const ClothSynthesisOptions * o,
     ClothObservedCounts * counts, GError ** error)
 {
   if (!input->observations)
     return cloth_recording_new (input->take, error);
-  return cloth_recording_new_observed (input->take, input->observations, found,
-      model, o->gain, &o->rollout, counts, error);
+  return cloth_recording_new_observed (input->take, input->observations, model,
+      o->gain, &o->rollout, counts, error);
 }
 
 static gdouble
@@ -282,7 +282,15 @@ straighten (ClothRecording * r, const ClothModel * model,
   return TRUE;
 }
 
-/* What was seen, of films without a mesh as the model at hand has it. */
+/* Places on lone rays, and paths of clamps that nobody logged, are as the model at hand has them. */
+static gboolean
+is_to_be_made (const ClothSynthesisTake * take)
+{
+  return !take->recording || take->counts.places
+      || take->recording->scene->clamps_sd;
+}
+
+/* What was seen, as the model at hand has it. */
 static gboolean
 look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
     const ClothModel * model, const ClothSynthesisOptions * o, GError ** error)
@@ -290,11 +298,9 @@ look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
   for (guint i = 0; i < s->n_takes; i++) {
     ClothSynthesisTake *take = &s->takes[i];
 
-    if (!take->recording || take->counts.places) {
-      g_autoptr (ClothRecording) before = g_steal_pointer (&take->recording);
-
-      take->recording = record (&inputs[i], before ? before->scene : NULL,
-          model, o, &take->counts, error);
+    if (is_to_be_made (take)) {
+      cloth_recording_free (take->recording);
+      take->recording = record (&inputs[i], model, o, &take->counts, error);
     }
     if (!take->recording
         || !cloth_recording_refine_paths (take->recording, model, o->gain,

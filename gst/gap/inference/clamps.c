@@ -63,7 +63,10 @@ cloth_gap_find_clamps_off (const ClothRecording * recording, gdouble * n)
         k % n_held);
     const gsize at = k / n_held * r->n + held->vertex;
 
-    if (r->seen[at] == 0. || !cloth_gap_is_surely_held (r, held, k / n_held))
+    /* a path that was found in the cloth is no log */
+    if (r->seen[at] == 0. || (r->scene->clamps_sd
+            && r->scene->clamps_sd[k] > 0.)
+        || !cloth_gap_is_surely_held (r, held, k / n_held))
       continue;
     for (guint c = 0; c < 3; c++) {
       const gdouble off = r->y[3 * at + c] - r->scene->clamps[3 * k + c];
