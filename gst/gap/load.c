@@ -55,6 +55,21 @@ note_paths (ClothDiagnosis * d, const ClothRecording * r)
   cloth_gap_result_add_note (d->result, note);
 }
 
+/* A user's simulator follows the log of the clamps. */
+static gboolean
+check_paths_are_logged (const ClothDiagnosis * d, const ClothRecording * r,
+    GError ** error)
+{
+  if (!r->scene->clamps_sd || (!d->options->simulator
+          && d->options->n_simulated == 0))
+    return TRUE;
+  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: the "
+      "paths of its clamps were not logged, so your simulator can't have "
+      "followed them; run “gst-cloth-fit-1.0 fit” and diagnose the take that "
+      "it writes, whose paths are known", r->name);
+  return FALSE;
+}
+
 /* From its positions, or from what cameras saw. */
 static ClothRecording *
 make_recording (ClothDiagnosis * d, ClothTake * take,
@@ -85,6 +100,8 @@ load_one (ClothDiagnosis * d, ClothTake * take, const ClothModel * model,
   if (!r)
     return FALSE;
   g_ptr_array_add (d->recordings, r);
+  if (role != CLOTH_GAP_BASELINE && !check_paths_are_logged (d, r, error))
+    return FALSE;
   if (!cloth_recording_refine_paths (r, model, d->study.gain,
           &d->study.rollout, error))
     return FALSE;

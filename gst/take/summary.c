@@ -132,8 +132,16 @@ distance (const gfloat * a, const gfloat * b)
       (gdouble) a[2] - b[2]);
 }
 
+static gboolean
+is_held (const ClothTakeInfo * info, guint i, gdouble time)
+{
+  const ClothHeld *held = &g_array_index (info->held, ClothHeld, i);
+
+  return time >= held->from_s && time < held->until_s;
+}
+
 static void
-look_at_clamps (Pass * pass, const ClothTakeInfo * info,
+look_at_clamps (Pass * pass, const ClothTakeInfo * info, gdouble time,
     const gfloat * positions)
 {
   for (guint i = 0; i < info->held->len; i++) {
@@ -144,7 +152,7 @@ look_at_clamps (Pass * pass, const ClothTakeInfo * info,
 
     if (isfinite (moved))
       pass->lengths[i] += moved;
-    pass->open[i] += isnan (pass->clamps[3 * i]);
+    pass->open[i] += isnan (pass->clamps[3 * i]) && is_held (info, i, time);
     if (isfinite (away))
       g_array_append_val ((GArray *) pass->distances->pdata[i], away);
   }
@@ -181,7 +189,7 @@ look (ClothTake * take, Pass * pass, GError ** error)
     if (i == 0)
       memcpy (pass->before, pass->clamps,
           3 * (gsize) info->held->len * sizeof *pass->before);
-    look_at_clamps (pass, info, positions);
+    look_at_clamps (pass, info, cloth_take_get_time (take, i), positions);
   }
   return TRUE;
 }

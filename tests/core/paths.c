@@ -131,8 +131,8 @@ test_seen (void)
   after = find_error (r);
   g_test_message ("%.2f mm, then %.2f mm, of noise of %.2f mm", 1e3 * before,
       1e3 * after, 1e3 * NOISE * sqrt (3.));
-  g_assert_cmpfloat (before, <, 0.75 * NOISE * sqrt (3.));
-  g_assert_cmpfloat (after, <, 0.85 * NOISE * sqrt (3.));
+  g_assert_cmpfloat (before, <, 0.6 * NOISE * sqrt (3.));
+  g_assert_cmpfloat (after, <, 0.6 * NOISE * sqrt (3.));
 }
 
 /* Where nobody sees the corner, the cloth that hangs from it tells where the hand is. What is said of how
@@ -150,7 +150,7 @@ test_hidden (void)
   g_test_message ("%.1f mm, then %.1f mm, said %.1f mm", 1e3 * before,
       1e3 * after, 1e3 * sqrt (sd));
   g_assert_cmpfloat (before, >, 0.01);
-  g_assert_cmpfloat (after, <, 0.25 * before);
+  g_assert_cmpfloat (after, <, 0.1 * before);
   g_assert_cmpfloat (after, <, 3. * sqrt (sd));
   g_assert_cmpfloat (sqrt (sd), <, 0.5 * before);
 }
@@ -176,7 +176,7 @@ test_half_logged (void)
       } else {
         g_assert_cmpfloat (r->scene->clamps_sd[2 * f + i], >, 0.);
         for (guint k = 0; k < 3; k++)
-          g_assert_cmpfloat_with_epsilon (at[k], truth[k], 5. * NOISE);
+          g_assert_cmpfloat_with_epsilon (at[k], truth[k], 3. * NOISE);
       }
     }
 }
@@ -191,6 +191,8 @@ test_threads (void)
 
   g_assert_cmpmem (one->scene->clamps, 6 * N_FRAMES * sizeof (gdouble),
       three->scene->clamps, 6 * N_FRAMES * sizeof (gdouble));
+  g_assert_cmpmem (one->scene->clamps_sd, 2 * N_FRAMES * sizeof (gdouble),
+      three->scene->clamps_sd, 2 * N_FRAMES * sizeof (gdouble));
 }
 
 /* The second camera doesn't see the corners. */
@@ -200,6 +202,90 @@ hide_corners (guint camera, guint vertex, guint frame)
   const guint column = MIN (vertex % COLUMNS, COLUMNS - 1 - vertex % COLUMNS);
 
   return camera == 1 && column < 3 && vertex / COLUMNS < 3;
+}
+
+/* What stands in clamps.npy while nothing is held is no path: neither NaN nor anything else. */
+static void
+test_let_go (void)
+{
+  const Case c = { 0 };
+  g_autofree gchar *parent = g_dir_make_tmp ("cloth-paths-XXXXXX", NULL);
+  g_autoptr (ClothTake) take = record (parent, &c);
+  g_autofree gdouble *positions = test_gap_positions (take);
+  g_autoptr (GError) error = NULL;
+
+  for (guint fault = 0; fault < 2; fault++) {
+    g_autofree gchar *folder = g_strdup_printf ("%s/let-go%u", parent, fault);
+    g_autoptr (ClothTakeInfo) info =
+        cloth_take_info_copy (cloth_take_get_info (take));
+    g_autoptr (ClothTakeWriter) writer = NULL;
+    g_autoptr (ClothTake) let_go = NULL;
+    g_autoptr (ClothRecording) r = NULL;
+
+    g_array_set_size (info->held, 1);
+    g_array_index (info->held, ClothHeld, 0).until_s = 0.6;
+    writer =
+        cloth_take_writer_new (folder, info, cloth_take_get_topology (take),
+        &error);
+    for (guint f = 0; f < N_FRAMES; f++) {
+      gfloat row[3 * N], clamps[3];
+      guint8 states[N];
+
+      memset (states, CLOTH_VERTEX_MEASURED, N);
+
+      for (guint i = 0; i < 3 * N; i++)
+        row[i] = (gfloat) positions[3 * N * f + i];
+      swing (0, f / FPS, clamps);
+      for (guint k = 0; k < 3 && (f / FPS >= 0.6 || fault == 1); k++)
+        clamps[k] = fault == 1 && f / FPS >= 0.6 ? 0.f : NAN;
+      g_assert_true (cloth_take_writer_append (writer, f / FPS, row, states,
+              NULL, clamps, &error));
+    }
+    g_assert_true (cloth_take_writer_close (writer, &error));
+    let_go = cloth_take_open (folder, &error);
+    r = cloth_recording_new (let_go, &error);
+    g_assert_no_error (error);
+    if (fault == 0) {
+      g_assert_null (r->scene->clamps_sd);
+      continue;
+    }
+    for (guint f = 0; f < N_FRAMES; f++) {
+      gfloat truth[3];
+
+      swing (0, f / FPS, truth);
+      for (guint k = 0; f / FPS < 0.6 && k < 3; k++)
+        g_assert_cmpfloat_with_epsilon (r->scene->clamps[3 * f + k], truth[k],
+            4. * NOISE);
+    }
+  }
+  test_gap_remove (parent);
+}
+
+/* A model that has nothing to do with the cloth moves no path to where it is worse; what is said of how well
+ * it is known stays honest. */
+static void
+test_wrong_model (void)
+{
+  const ClothRolloutOptions options = {.threads = 1 };
+  const Case c = {.hidden = 3 };
+  g_autofree gchar *parent = g_dir_make_tmp ("cloth-paths-XXXXXX", NULL);
+  g_autoptr (ClothTake) take = record (parent, &c);
+  g_autoptr (ClothModel) model = model_new ();
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) r = cloth_recording_new (take, &error);
+  const gdouble before = find_error (r);
+  gdouble sd = 0.;
+
+  test_gap_remove (parent);
+  model->stretch_warp = model->stretch_weft = 2.;
+  model->damping_mass = 20.;
+  g_assert_true (cloth_recording_refine_paths (r, model, 1600., &options,
+          &error));
+  for (guint k = 0; k < 2 * N_FRAMES; k++)
+    sd += 3. * pow (r->scene->clamps_sd[k], 2.) / (2 * N_FRAMES);
+  g_test_message ("%.1f mm, then %.1f mm, said %.1f mm", 1e3 * before,
+      1e3 * find_error (r), 1e3 * sqrt (sd));
+  g_assert_cmpfloat (find_error (r), <, 3. * sqrt (sd));
 }
 
 /* What is held lies on lone rays: along them nothing says where the hand is but the cloth. */
@@ -269,7 +355,7 @@ test_nothing_seen (void)
   g_assert_nonnull (strstr (error->message, "0 frames that show the cloth"));
 }
 
-/* A simulation that diverges moves no path; one that is stopped says so. */
+/* A simulation that is stopped says so. */
 static gboolean
 stop (gpointer data, gdouble share)
 {
@@ -302,6 +388,8 @@ main (int argc, char **argv)
   g_test_add_func ("/paths/hidden", test_hidden);
   g_test_add_func ("/paths/half-logged", test_half_logged);
   g_test_add_func ("/paths/threads", test_threads);
+  g_test_add_func ("/paths/let-go", test_let_go);
+  g_test_add_func ("/paths/wrong-model", test_wrong_model);
   g_test_add_func ("/paths/rays", test_rays);
   g_test_add_func ("/paths/refused", test_refused);
   g_test_add_func ("/paths/nothing-seen", test_nothing_seen);
