@@ -41,10 +41,12 @@
 typedef struct
 {
   const gchar *folder, *print;
+  gboolean repeats;
 } Film;
 
 static const Film films[] = {
-  {"repeated", "repeated"},
+  {"lineart", "not repeated", FALSE},
+  {"repeated", "repeated", TRUE},
 };
 
 #define N_FILMS G_N_ELEMENTS (films)
@@ -531,7 +533,7 @@ track_some (gpointer data, guint begin, guint end, guint worker)
     track (i / N_RUNS, i % N_RUNS);
 }
 
-/* What holds of both prints. */
+/* What holds of both prints, and what a motif that is repeated changes. */
 static void
 test_figures (void)
 {
@@ -541,22 +543,28 @@ test_figures (void)
 
     for (guint run = 0; run < N_RUNS; run++)
       tell (i, run);
-    /* of the markers most are left to the multitrack */
+    /* from frame to frame most markers are lost, and hardly any is wrong */
     g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_MULTI), >,
         1.5 * mean_right (i, CLOTH_TRACKER_FRAMES));
-    g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_MULTI), >,
-        1.1 * mean_right (i, CLOTH_TRACKER_REFERENCE));
     g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_FRAMES), <, 0.1);
+    /* the last frames are better references than the first, where a motif is repeated */
+    if (films[i].repeats)
+      g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_MULTI), >,
+          1.1 * mean_right (i, CLOTH_TRACKER_REFERENCE));
+    else {
+      g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_MULTI), <, 0.05);
+      g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_REFERENCE), <, 0.05);
+    }
     /* there are more features than markers, and flow keeps them best */
-    g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_FRAMES_2D), >,
+    g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_REFERENCE_2D), >,
         mean_right (i, CLOTH_TRACKER_MULTI));
     g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_LUCAS_KANADE), >,
-        3. * mean_right (i, CLOTH_TRACKER_FRAMES_2D));
-    g_assert_cmpuint (lucas[FRAMES - 1].points, >, lucas[0].points / 4);
+        1.5 * mean_right (i, CLOTH_TRACKER_REFERENCE_2D));
+    g_assert_cmpuint (lucas[FRAMES - 1].points, >, lucas[0].points / 5);
     /* crests: without the test points pile up */
     g_assert_cmpfloat (share_off (i, PLAIN), >, 0.1);
     g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_LUCAS_KANADE), <,
-        0.25 * share_off (i, PLAIN));
+        0.33 * share_off (i, PLAIN));
     g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_UVLESS), <, 0.05);
   }
 }
