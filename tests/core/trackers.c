@@ -41,19 +41,22 @@
 typedef struct
 {
   const gchar *folder, *print;
+  gboolean repeats;
 } Film;
 
 static const Film films[] = {
-  {"repeated", "repeated"},
+  {"lineart", "not repeated", FALSE},
+  {"repeated", "repeated", TRUE},
 };
 
 #define N_FILMS G_N_ELEMENTS (films)
 
 static const guint shown[] = { 0, 10, 20, 30, 41 };
 
-/* The trackers, and last Lucas–Kanade without the test for crests. */
+/* The trackers, and last Lucas–Kanade without the test for crests, and with only the way back of it. */
 #define PLAIN CLOTH_TRACKER_N_KINDS
-#define N_RUNS (CLOTH_TRACKER_N_KINDS + 1)
+#define BACK (CLOTH_TRACKER_N_KINDS + 1)
+#define N_RUNS (CLOTH_TRACKER_N_KINDS + 2)
 
 /* Of whose points a picture is drawn. */
 #define DRAWN_FRAME 32
@@ -317,12 +320,13 @@ view (const Footage * f, guint frame, ClothTrackerView views[CAMERAS])
   }
 }
 
+/* Whether hidden points are counted, which takes long; before, hardly any is. */
 static gboolean
-is_shown (guint frame)
+is_searched (guint frame)
 {
   for (guint i = 0; i < G_N_ELEMENTS (shown); i++)
     if (shown[i] == frame)
-      return TRUE;
+      return frame >= 20;
   return FALSE;
 }
 
@@ -358,7 +362,7 @@ count_features (const ClothTracker * tracker, const Footage * f, guint frame,
             features[i].px, &ray));
     surface (frame, features[i].uv, X);
     count->off += find_distance (&ray, X) > OFF;
-    if (is_shown (frame))
+    if (is_searched (frame))
       count->hidden += is_hidden (frame, ray.origin, X);
   }
   count->points = n;
@@ -445,7 +449,7 @@ static void
 track (guint film, guint run)
 {
   const Footage *f = &footage[film];
-  const ClothTrackerKind kind = run == PLAIN ? CLOTH_TRACKER_LUCAS_KANADE :
+  const ClothTrackerKind kind = run >= PLAIN ? CLOTH_TRACKER_LUCAS_KANADE :
       (ClothTrackerKind) run;
   ClothTrackerParams params = cloth_tracker_default_params ();
   g_autoptr (ClothTracker) tracker = NULL;
@@ -453,6 +457,9 @@ track (guint film, guint run)
   g_autoptr (GError) error = NULL;
 
   params.crests = run != PLAIN;
+  if (run == BACK)
+    params.crest = (ClothCrestParams) {
+    0., INFINITY, INFINITY};
   tracker = cloth_tracker_new (kind, &params, CAMERAS, f->rig->cameras, &error);
   g_assert_no_error (error);
   for (guint frame = 0; frame < FRAMES; frame++) {
@@ -471,7 +478,8 @@ track (guint film, guint run)
       count_uvless (tracker, f, frame, coverage, count);
     else
       count_features (tracker, f, frame, count);
-    if (film == 0 && frame == DRAWN_FRAME && kind == CLOTH_TRACKER_LUCAS_KANADE)
+    if (film == 0 && frame == DRAWN_FRAME && run != BACK
+        && kind == CLOTH_TRACKER_LUCAS_KANADE)
       keep_points (tracker, f, drawn[run == PLAIN]);
   }
 }
@@ -479,7 +487,8 @@ track (guint film, guint run)
 static const gchar *
 get_name (guint run)
 {
-  return run == PLAIN ? "lucas-kanade, no crest test" :
+  return run == BACK ? "lucas-kanade, way back only" : run == PLAIN ?
+      "lucas-kanade, no crest test" :
       cloth_tracker_kind_to_string ((ClothTrackerKind) run);
 }
 
@@ -531,7 +540,7 @@ track_some (gpointer data, guint begin, guint end, guint worker)
     track (i / N_RUNS, i % N_RUNS);
 }
 
-/* What holds of both prints. */
+/* What holds of both prints, and what a motif that is repeated changes. */
 static void
 test_figures (void)
 {
@@ -541,29 +550,38 @@ test_figures (void)
 
     for (guint run = 0; run < N_RUNS; run++)
       tell (i, run);
-    /* of the markers most are left to the multitrack */
+    /* from frame to frame most markers are lost, and hardly any is wrong */
     g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_MULTI), >,
         1.5 * mean_right (i, CLOTH_TRACKER_FRAMES));
-    g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_MULTI), >,
-        1.1 * mean_right (i, CLOTH_TRACKER_REFERENCE));
     g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_FRAMES), <, 0.1);
+    /* the last frames are better references than the first, where a motif is repeated */
+    if (films[i].repeats)
+      g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_MULTI), >,
+          1.1 * mean_right (i, CLOTH_TRACKER_REFERENCE));
+    else {
+      g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_MULTI), <, 0.05);
+      g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_REFERENCE), <, 0.05);
+    }
     /* there are more features than markers, and flow keeps them best */
-    g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_FRAMES_2D), >,
+    g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_REFERENCE_2D), >,
         mean_right (i, CLOTH_TRACKER_MULTI));
     g_assert_cmpfloat (mean_right (i, CLOTH_TRACKER_LUCAS_KANADE), >,
-        3. * mean_right (i, CLOTH_TRACKER_FRAMES_2D));
-    g_assert_cmpuint (lucas[FRAMES - 1].points, >, lucas[0].points / 4);
+        1.5 * mean_right (i, CLOTH_TRACKER_REFERENCE_2D));
+    g_assert_cmpuint (lucas[FRAMES - 1].points, >, lucas[0].points / 5);
     /* crests: without the test points pile up */
     g_assert_cmpfloat (share_off (i, PLAIN), >, 0.1);
     g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_LUCAS_KANADE), <,
-        0.25 * share_off (i, PLAIN));
+        0.33 * share_off (i, PLAIN));
+    g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_LUCAS_KANADE), <,
+        0.97 * share_off (i, BACK));
     g_assert_cmpfloat (share_off (i, CLOTH_TRACKER_UVLESS), <, 0.05);
   }
 }
 
 /* ---- pictures ---- */
 
-static const guint32 colours[N_RUNS] = { 0x888888, 0xd07000, 0x1060c0, 0x888888,
+static const guint32 colours[PLAIN + 1] =
+    { 0x888888, 0xd07000, 0x1060c0, 0x888888,
   0x108040, 0xd07000, 0x8030a0, 0xc02020
 };
 
