@@ -12,7 +12,7 @@
 #include "gst/file/npy.h"
 #include "gst/file/output.h"
 #include "gst/rig/rigfile.h"
-#include "gst/take/take-info.h"
+#include "gst/take/take.h"
 #include "gst/vision/track/vertices.h"
 
 struct _FitTrackTake

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "gst/rig/rig.h"
-#include "gst/vision/mask/runs.h"
+#include "gst/vision/mask/mask.h"
 #include "gst/vision/track/flat.h"
 #include "gst/vision/track/tracker.h"
 
