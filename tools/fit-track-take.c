@@ -28,6 +28,29 @@ struct _FitTrackTake
   GArray *points;               /* its GstClothGridPoint */
 };
 
+/* @folder: of a take to be
+ * @error: #GFileError
+ *
+ * Returns: whether it can be made there: what an older take leaves in a folder would become part of it
+ */
+gboolean
+fit_track_take_check (const gchar * folder, GError ** error)
+{
+  g_autofree gchar *info = g_build_filename (folder, "take.json", NULL);
+
+  if (g_file_test (info, G_FILE_TEST_EXISTS)) {
+    g_set_error (error, G_FILE_ERROR, G_FILE_ERROR_EXIST,
+        "“%s” is a take already: give another folder, or remove it",
+        folder);
+    return FALSE;
+  }
+  if (g_mkdir_with_parents (folder, 0777) == 0)
+    return TRUE;
+  g_set_error (error, G_FILE_ERROR, g_file_error_from_errno (errno),
+      "cannot make the folder “%s”: %s", folder, g_strerror (errno));
+  return FALSE;
+}
+
 /* @options: copied but for what it points at, which has to outlive the take; so has @rig
  *
  * Returns: (transfer full): a take without frames
@@ -84,7 +107,8 @@ find_points (FitTrackTake * take, guint camera,
   g_array_set_size (take->uv, 0);
   g_array_set_size (take->px, 0);
   g_array_set_size (take->points, 0);
-  for (guint i = 0; i < n_features; i++) {
+  for (guint i = 0; i < n_features
+      && take->uv->len < GST_CLOTH_MAX_FEATURES; i++) {
     if (features[i].camera != camera || isnan (features[i].uv[0]))
       continue;
     g_array_append_val (take->uv, features[i].uv);
@@ -125,7 +149,10 @@ add_picture (FitTrackTake * take, guint camera, gdouble time_s,
   GstMapInfo map;
 
   G_STATIC_ASSERT (sizeof (ClothRun) == sizeof (GstClothRun));
-  GST_BUFFER_PTS (picture) = (GstClockTime) (time_s * GST_SECOND + 0.5);
+  /* pictures of one number were taken at one time: the first camera's, by each camera's clock */
+  time_s += c->offset_s - take->rig->cameras[0].offset_s;
+  GST_BUFFER_PTS (picture) =
+      (GstClockTime) (fmax (time_s, 0.) * GST_SECOND + 0.5);
   gst_buffer_add_cloth_matches_meta (picture, matches);
   gst_buffer_add_cloth_silhouette_meta (picture, silhouette);
   packed = gst_cloth_observations_pack (picture);
@@ -143,17 +170,38 @@ add_picture (FitTrackTake * take, guint camera, gdouble time_s,
  * @features: (array length=n_features): what all cameras saw
  * @n_features: how many
  * @silhouettes: (array) (element-type ClothRun): of each camera
+ * @error: #GFileError
+ *
+ * Returns: %FALSE when the time is none, or the first frame shows no vertex
  */
-void
+gboolean
 fit_track_take_add (FitTrackTake * take, gdouble time_s,
     const ClothTrackedFeature * features, guint n_features,
-    const GArray * const *silhouettes)
+    const GArray * const *silhouettes, GError ** error)
 {
+  guint n_points = 0;
+
+  if (!isfinite (time_s) || (take->times->len
+          && time_s <= g_array_index (take->times, gdouble,
+              take->times->len - 1))) {
+    g_set_error_literal (error, G_FILE_ERROR, G_FILE_ERROR_INVAL,
+        "it has no time, or not a later one than the picture before, which a take "
+        "needs");
+    return FALSE;
+  }
   for (guint c = 0; c < take->rig->n_cameras; c++) {
     find_points (take, c, features, n_features);
+    n_points += take->points->len;
     add_picture (take, c, time_s, silhouettes[c]);
   }
+  if (take->times->len == 0 && n_points == 0) {
+    g_set_error_literal (error, G_FILE_ERROR, G_FILE_ERROR_INVAL,
+        "no vertex of the grid lies between features that are near enough to each "
+        "other: give a coarser --grid");
+    return FALSE;
+  }
   g_array_append_val (take->times, time_s);
+  return TRUE;
 }
 
 static gboolean

@@ -28,9 +28,10 @@ typedef struct _FitTrackTake FitTrackTake;
 FitTrackTake *fit_track_take_new (const FitTrackTakeOptions * options,
     const ClothRig * rig, const ClothFlatPose * pose);
 void fit_track_take_free (FitTrackTake * take);
-void fit_track_take_add (FitTrackTake * take, gdouble time_s,
+gboolean fit_track_take_check (const gchar * folder, GError ** error);
+gboolean fit_track_take_add (FitTrackTake * take, gdouble time_s,
     const ClothTrackedFeature * features, guint n_features,
-    const GArray * const *silhouettes);
+    const GArray * const *silhouettes, GError ** error);
 gboolean fit_track_take_write (FitTrackTake * take, GError ** error);
 
 G_END_DECLS

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
+#include <gst/cloth/cloth.h>
 #include <gst/gst.h>
 #include <math.h>
 #include <string.h>
@@ -29,6 +30,7 @@ typedef struct
   const gchar *path;
   const ClothCamera *camera;
   ClothFrameReader *reader;
+  gdouble first_s;              /* when its first picture was taken, by its own time */
   ClothCvSift *sift;
   ClothMask *mask;
   GArray *runs;                 /* its silhouette, of ClothRun */
@@ -135,6 +137,16 @@ parse_list (const gchar * text, guint limit, GArray * list)
   return *end == 0;
 }
 
+static gboolean
+has_twice (const GArray * list)
+{
+  for (guint i = 0; i < list->len; i++)
+    for (guint k = 0; k < i; k++)
+      if (g_array_index (list, guint, i) == g_array_index (list, guint, k))
+        return TRUE;
+  return FALSE;
+}
+
 /* The grid of a take, and what is held in it. */
 static gboolean
 parse_grid (Job * job, GError ** error)
@@ -154,10 +166,17 @@ parse_grid (Job * job, GError ** error)
     return FALSE;
   }
   memcpy (job->grid, grid->data, sizeof job->grid);
-  if (a->held && !parse_list (a->held, job->grid[0] * job->grid[1], job->held)) {
+  if (job->grid[0] * job->grid[1] > GST_CLOTH_MAX_FEATURES) {
     g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
-        "--held %s: give vertices, row · %u + column, of the %u × %u, for "
-        "instance 0,%u", a->held, job->grid[0], job->grid[0], job->grid[1],
+        "--grid %s: %u vertices are more than the %u that a picture may show",
+        a->grid, job->grid[0] * job->grid[1], GST_CLOTH_MAX_FEATURES);
+    return FALSE;
+  }
+  if (a->held && (!parse_list (a->held, job->grid[0] * job->grid[1],
+              job->held) || has_twice (job->held))) {
+    g_set_error (error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
+        "--held %s: give vertices, each once, row · %u + column, of the %u × %u, "
+        "for instance 0,%u", a->held, job->grid[0], job->grid[0], job->grid[1],
         job->grid[0] - 1);
     return FALSE;
   }
@@ -264,6 +283,33 @@ describe (gpointer data, guint begin, guint end, guint worker)
   }
 }
 
+/* Pictures of one number have to be of one time: films of another rate are not. */
+static gboolean
+check_times (Job * job, GError ** error)
+{
+  gdouble first = NAN;
+
+  for (guint c = 0; c < job->n; c++) {
+    Film *film = &job->films[c];
+    const gdouble time = cloth_frame_reader_get_time (film->reader);
+
+    if (job->frame == 0)
+      film->first_s = time;
+    if (c == 0)
+      first = time - film->first_s;
+    /* by more than half a frame; of films that say no times nothing is known */
+    if (job->frame == 0 || !(fabs (time - film->first_s - first) > 0.5 * first /
+            job->frame))
+      continue;
+    g_set_error (error, G_IO_ERROR, G_IO_ERROR_INVALID_DATA,
+        "picture %u of %s is %.3f s after its first, and of %s %.3f s: the films "
+        "must run in step", job->frame, film->path, time - film->first_s,
+        job->films[0].path, first);
+    return FALSE;
+  }
+  return TRUE;
+}
+
 /* The next picture of each film, and its features. @more: whether there is one */
 static gboolean
 read_frame (Job * job, gboolean * more, GError ** error)
@@ -291,6 +337,8 @@ read_frame (Job * job, gboolean * more, GError ** error)
         job->films[goes_on].path);
   if (!*more)
     return TRUE;
+  if (!check_times (job, error))
+    return FALSE;
   cloth_pool_run_one_by_one (job->pool, describe, job, job->n);
   for (guint c = 0; c < job->n; c++)
     if (job->films[c].error) {
@@ -434,12 +482,8 @@ begin_take (Job * job, GError ** error)
     job->grid[1], (const guint *) (gpointer) job->held->data, job->held->len
   };
 
-  if (isnan (find_time (job))) {
-    g_set_error (error, G_IO_ERROR, G_IO_ERROR_INVALID_DATA,
-        "%s: its pictures have no times, which a take needs",
-        job->films[0].path);
+  if (!fit_track_take_check (job->arguments->output, error))
     return FALSE;
-  }
   job->take = fit_track_take_new (&options, job->rig, &job->pose);
   return TRUE;
 }
@@ -518,8 +562,8 @@ report_features (Job * job)
   NUMBER (ClothTrackedFeature, "before_y_px", before[1]);
 }
 
-static void
-add_to_take (Job * job)
+static gboolean
+add_to_take (Job * job, GError ** error)
 {
   g_autofree const GArray **silhouettes = g_new (const GArray *, job->n);
   guint n;
@@ -531,20 +575,24 @@ add_to_take (Job * job)
       find_silhouette (job, c);
     silhouettes[c] = job->films[c].runs;
   }
-  fit_track_take_add (job->take, find_time (job), features, n, silhouettes);
+  return fit_track_take_add (job->take, find_time (job), features, n,
+      silhouettes, error);
 }
 
-static void
-report (Job * job)
+static gboolean
+report (Job * job, GError ** error)
 {
-  if (job->take)
-    add_to_take (job);
+  if (job->take && !add_to_take (job, error)) {
+    g_prefix_error (error, "%s, picture %u: ", job->films[0].path, job->frame);
+    return FALSE;
+  }
   cloth_json_writer_begin_object (job->json, NULL);
   if (cloth_tracker_kind_is_3d (job->kind))
     report_markers (job);
   else
     report_features (job);
   cloth_json_writer_end_object (job->json);
+  return TRUE;
 }
 
 static gboolean
@@ -586,7 +634,8 @@ track (Job * job, GError ** error)
   begin_report (job);
   if (job->arguments->grid && !begin_take (job, error))
     return FALSE;
-  report (job);
+  if (!report (job, error))
+    return FALSE;
   cloth_tracker_get_markers (job->tracker, &n[0]);
   cloth_tracker_get_features (job->tracker, &n[1]);
   first = n[0] + n[1];
@@ -602,7 +651,8 @@ track (Job * job, GError ** error)
       break;
     if (!cloth_tracker_run (job->tracker, job->views, error))
       return FALSE;
-    report (job);
+    if (!report (job, error))
+      return FALSE;
   }
   cloth_tracker_get_markers (job->tracker, &n[0]);
   cloth_tracker_get_features (job->tracker, &n[1]);

@@ -307,6 +307,15 @@ speck (Scene * scene, ClothFlatParams * params)
   scene->masks[3][100 * WIDTH + 100] = 1;
 }
 
+/* All but a hole: every end of it lies on the picture's edge. */
+static void
+ring (Scene * scene, ClothFlatParams * params)
+{
+  memset (scene->masks[1], 1, WIDTH * HEIGHT);
+  for (gint y = 100; y < 130; y++)
+    memset (scene->masks[1] + y * WIDTH + 140, 0, 30);
+}
+
 static void
 small (Scene * scene, ClothFlatParams * params)
 {
@@ -352,6 +361,7 @@ static const struct
   {"two", two, CLOTH_FLAT_ERROR_SILHOUETTE, "*cam0*more than one piece*", TRUE},
   {"cut", cut, CLOTH_FLAT_ERROR_SHAPE, "*cam0*edge of its picture*", FALSE},
   {"round", round_one, CLOTH_FLAT_ERROR_SHAPE, "*cam3*straight sides*", FALSE},
+  {"ring", ring, CLOTH_FLAT_ERROR_SHAPE, "*cam1*straight sides*", FALSE},
   {"speck", speck, CLOTH_FLAT_ERROR_SHAPE, "*cam3*", FALSE},
   {"small", small, CLOTH_FLAT_ERROR_SHAPE, "*0.63*0.50*0.9*", FALSE},
   {"moved", moved, CLOTH_FLAT_ERROR_DISAGREE, "*cam2*6? mm*", FALSE},
@@ -406,6 +416,20 @@ test_parameters (void)
           &poses, &error));
   g_assert_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_PARAMETER);
   g_clear_error (&error);
+  annealing = cloth_anneal_default_params ();
+  for (guint i = 0; i < 2; i++) {
+    ClothFlatParams other = params;
+
+    /* centimetres for metres: behind the cameras */
+    other.size[0] = i ? 63. : 0.9;
+    other.size[1] = i ? 67. : params.size[1];
+    g_assert_false (cloth_anneal_find (&annealing, &other, N, scene.views, NULL,
+            &poses, &error));
+    g_assert_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SHAPE);
+    g_test_message ("%s", error->message);
+    g_assert_cmpuint (poses.n, ==, 0);
+    g_clear_error (&error);
+  }
   g_assert_false (cloth_flat_find (&params, 0, NULL, NULL, &poses, &error));
   g_assert_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_PARAMETER);
 }

@@ -38,14 +38,14 @@ def launch(*words):
     subprocess.run(['gst-launch-1.0', '-q', *words], check=True, timeout=100)
 
 
-def cut(camera, frames, name):
+def cut(camera, frames, name, rate=25):
     """The first pictures of a film."""
     path, pictures = os.path.join(folder, name), os.path.join(folder, '%d-%%03d.jpg' % camera)
     if not os.path.exists(pictures % 0):
         launch('filesrc', 'location=%s/repeated/cam%d.mp4' % (lift, camera), '!', 'qtdemux', '!', 'h264parse', '!',
                'avdec_h264', '!', 'jpegenc', 'quality=97', '!', 'multifilesink', 'location=' + pictures)
     launch('multifilesrc', 'location=' + pictures, 'stop-index=%d' % (frames - 1),
-           'caps=image/jpeg,framerate=25/1', '!', 'jpegparse', '!', 'avimux', '!', 'filesink', 'location=' + path)
+           'caps=image/jpeg,framerate=%d/1' % rate, '!', 'jpegparse', '!', 'avimux', '!', 'filesink', 'location=' + path)
     return path
 
 
@@ -106,7 +106,8 @@ check(done.returncode == 0 and len(told['frames']) == 3 and 'short.avi ends afte
       'the shortest film ends it, which is said')
 
 # a take of a hand whose path nobody knows, which a cloth can be fitted to
-done = run(*words('lucas-kanade', more=['--grid', '17,18', '--held', '0']))
+out = os.path.join(folder, 'take')
+done = run(*words('lucas-kanade', output=out, more=['--grid', '17,18', '--held', '0']))
 coarse = truth.reshape(-1, ROWS, COLUMNS, 3)[:, ::2, ::2].reshape(len(truth), -1, 3)
 arrays = {name: np.load('%s/%s.npy' % (out, name)) for name in ('positions', 'times', 'clamps')}
 check(done.returncode == 0 and len(arrays['times']) == FRAMES and abs(arrays['times'][2] - 0.08) < 1e-3
@@ -123,6 +124,8 @@ hand = np.linalg.norm(np.load(folder + '/fit/take0/clamps.npy')[:, 0] - coarse[:
 check(np.sqrt((off ** 2).mean()) < 0.003 and np.sqrt((hand ** 2).mean()) < 0.02,
       'fitted %.1f mm off, and the hand %.1f mm: %s' % (1e3 * np.sqrt((off ** 2).mean()),
                                                       1e3 * np.sqrt((hand ** 2).mean()), done.stderr))
+
+out = os.path.join(folder, 'out')
 
 texts = []
 for threads in '1', '3':
@@ -150,6 +153,10 @@ for code, text, line in (
         (2, 'give columns and rows', words('lucas-kanade', output=fresh, more=['--held', '0'])),
         (2, 'give vertices', words('lucas-kanade', output=fresh, more=['--grid', '3,5', '--held', '15'])),
         (2, 'give vertices', words('lucas-kanade', output=fresh, more=['--grid', '3,5', '--held', '0,'])),
+        (2, 'each once', words('lucas-kanade', output=fresh, more=['--grid', '3,5', '--held', '2,2'])),
+        (2, 'more than the 65536', words('lucas-kanade', output=fresh, more=['--grid', '300,300'])),
+        (1, 'must run in step', words('multi', films=films[:3] + [cut(3, 3, 'fast.avi', 50)], output=fresh)),
+        (1, 'is a take already', words('lucas-kanade', output=folder + '/take', more=['--grid', '17,18'])),
         (2, 'are not of the command track', words('multi', output=fresh, more=['--model', 'a.json'])),
         (2, 'are of the command track', ['fit', 'take', '--model', 'a.json', '--output', fresh, '--anneal']),
         (1, '4 cameras, and 3 films and 4 backgrounds', words('multi', films=films[:3], output=fresh)),

@@ -65,7 +65,7 @@ ClothAnnealParams
 cloth_anneal_default_params (void)
 {
   return (ClothAnnealParams) {
-  0, 6000, 0.3, 0.0003};
+  0, 6000, 0.3, 0.0003, 0.1};
 }
 
 /* Sums up a silhouette, and adds where its middle is on the ground to @middle. */
@@ -285,6 +285,14 @@ cloth_anneal_find (const ClothAnnealParams * annealing,
     turned[k] = pose_about (params, at, at[2] + k * G_PI / 2);
     turned[k].residual = evaluate (&problem, &turned[k]);
     least = MIN (least, turned[k].residual);
+  }
+  if (!(least <= annealing->differ)) {
+    g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SHAPE,
+        "no cloth of %g × %g m that lies flat at z = %g m looks as in the first "
+        "pictures: the nearest differs from them by %.0f%% of its area; are its "
+        "size, the ground and the rig right?", params->size[0],
+        params->size[1], params->ground, 100. * fmin (least, 10.));
+    return FALSE;
   }
   for (guint k = 0; k < 4; k++)
     if (turned[k].residual < least + ALIKE)

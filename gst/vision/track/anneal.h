@@ -11,11 +11,12 @@ G_BEGIN_DECLS
  * @steps: poses that are tried (6000)
  * @hot: temperature of the first step, as a share of the silhouettes' area (0.3)
  * @cold: of the last (0.0003); in between it falls by the same factor each step
+ * @differ: greatest difference of the silhouettes that is left, as a share of their area (0.1)
  */
 typedef struct {
   guint64 seed;
   guint steps;
-  gdouble hot, cold;
+  gdouble hot, cold, differ;
 } ClothAnnealParams;
 
 ClothAnnealParams cloth_anneal_default_params (void);

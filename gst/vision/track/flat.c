@@ -443,10 +443,11 @@ fit_side (const GArray * points, const Line sides[4], const Point corners[4],
 static gboolean
 fit_sides (GArray * points, Point corners[4], gdouble * rms)
 {
-  g_autoptr (GArray) hull = find_hull (points);
+  /* all of it may lie on the picture's edge */
+  g_autoptr (GArray) hull = points->len ? find_hull (points) : NULL;
   Line sides[4] = { 0 };
 
-  if (hull->len < 3)
+  if (!hull || hull->len < 3)
     return FALSE;
   enclose (hull, sides);
   for (guint round = 0; round < ROUNDS; round++) {

@@ -97,7 +97,7 @@ typedef struct {
 
 /* @camera: which sees it
  * @id: the same in all frames, and another in each camera; of the tracker without (u, v) a number
- *   of this frame only
+ *   of this frame and camera only
  * @uv: place on the cloth, m; NaN of the tracker without (u, v)
  * @px: place in the picture
  * @before: place in the picture before; of the first frame @px
