@@ -34,11 +34,11 @@ typedef struct
 struct _ClothCrest
 {
   ClothDelaunay *delaunay;
-  GArray *edges, *lengths;
+  GArray *edges, *lengths, *ratios;
   guint *begin, *order;         /* edges of each point: order[begin[i]] … */
-  gdouble *usual, *scratch;
+  gdouble *usual;
   guint *good, *bad;            /* triangles of a point, and those turned over */
-  gsize size, scratch_size;
+  gsize size, order_size;
 };
 
 /* Returns: the usual ones
@@ -60,6 +60,7 @@ cloth_crest_new (void)
   crest->delaunay = cloth_delaunay_new ();
   crest->edges = g_array_new (FALSE, FALSE, sizeof (Edge));
   crest->lengths = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  crest->ratios = g_array_new (FALSE, FALSE, sizeof (gdouble));
   return crest;
 }
 
@@ -73,10 +74,10 @@ cloth_crest_free (ClothCrest * crest)
   cloth_delaunay_free (crest->delaunay);
   g_array_unref (crest->edges);
   g_array_unref (crest->lengths);
+  g_array_unref (crest->ratios);
   g_free (crest->begin);
   g_free (crest->order);
   g_free (crest->usual);
-  g_free (crest->scratch);
   g_free (crest->good);
   g_free (crest->bad);
   g_free (crest);
@@ -101,8 +102,7 @@ measure (const gdouble * points, guint a, guint b)
       points[2 * a + 1] - points[2 * b + 1]);
 }
 
-/* Edges of the triangles, each once from either side; that is an inner one twice, which counts alike for
- * all. */
+/* Edges of the triangles, each once for each of its triangles: inner ones twice. */
 static void
 list_edges (ClothCrest * c, const guint * triangles, guint n_triangles,
     const gdouble * uv, const gdouble * px)
@@ -136,10 +136,9 @@ index_edges (ClothCrest * c, guint n)
   const Edge *edges = (const Edge *) c->edges->data;
   const guint n_ends = 2 * c->edges->len;
 
-  if (n_ends > c->scratch_size) {
-    c->scratch_size = n_ends;
+  if (n_ends > c->order_size) {
+    c->order_size = n_ends;
     c->order = g_renew (guint, c->order, n_ends);
-    c->scratch = g_renew (gdouble, c->scratch, n_ends);
   }
   memset (c->begin, 0, (n + 1) * sizeof *c->begin);
   for (guint i = 0; i < c->edges->len; i++) {
@@ -160,17 +159,17 @@ static gdouble
 find_usual (ClothCrest * c, guint point)
 {
   const Edge *edges = (const Edge *) c->edges->data;
-  guint n = 0;
 
+  g_array_set_size (c->ratios, 0);
   for (guint i = c->begin[point]; i < c->begin[point + 1]; i++) {
     const Edge *edge = &edges[c->order[i]];
     const guint other = edge->a == point ? edge->b : edge->a;
 
-    for (guint j = c->begin[other]; j < c->begin[other + 1]
-        && n < c->scratch_size; j++)
-      c->scratch[n++] = edges[c->order[j]].ratio;
+    for (guint j = c->begin[other]; j < c->begin[other + 1]; j++)
+      g_array_append_val (c->ratios, edges[c->order[j]].ratio);
   }
-  return n ? cloth_median (c->scratch, n) : NAN;
+  return c->ratios->len ? cloth_median ((gdouble *) c->ratios->data,
+      c->ratios->len) : NAN;
 }
 
 /* Counts triangles that keep their sense and those that don't. */
