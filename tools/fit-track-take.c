@@ -3,8 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tools/fit-track-take.h"
 
-#include <errno.h>
-#include <glib/gstdio.h>
 #include <gst/cloth/cloth.h>
 #include <math.h>
 #include <string.h>
@@ -44,11 +42,7 @@ fit_track_take_check (const gchar * folder, GError ** error)
         folder);
     return FALSE;
   }
-  if (g_mkdir_with_parents (folder, 0777) == 0)
-    return TRUE;
-  g_set_error (error, G_FILE_ERROR, g_file_error_from_errno (errno),
-      "cannot make the folder “%s”: %s", folder, g_strerror (errno));
-  return FALSE;
+  return cloth_folder_make (folder, error);
 }
 
 /* @options: copied but for what it points at, which has to outlive the take; so has @rig
@@ -291,11 +285,8 @@ write_observations (const FitTrackTake * take, GError ** error)
   g_autofree gchar *folder = g_build_filename (take->options.folder,
       "observations", NULL);
 
-  if (g_mkdir_with_parents (folder, 0777) != 0) {
-    g_set_error (error, G_FILE_ERROR, g_file_error_from_errno (errno),
-        "cannot make the folder “%s”: %s", folder, g_strerror (errno));
+  if (!cloth_folder_make (folder, error))
     return FALSE;
-  }
   for (guint c = 0; c < take->rig->n_cameras; c++) {
     g_autofree gchar *name = g_strconcat (take->rig->cameras[c].name, ".obs",
         NULL);

@@ -3,9 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "tools/fit-track.h"
 
-#include <errno.h>
 #include <gio/gio.h>
-#include <glib/gstdio.h>
 #include <gst/cloth/cloth.h>
 #include <gst/gst.h>
 #include <math.h>
@@ -606,12 +604,8 @@ write_all (Job * job, GError ** error)
   cloth_json_writer_end_array (job->json);
   cloth_json_writer_end_object (job->json);
   text = cloth_json_writer_finish (job->json);
-  if (g_mkdir_with_parents (folder, 0777) != 0) {
-    g_set_error (error, G_FILE_ERROR, g_file_error_from_errno (errno),
-        "cannot make the folder “%s”: %s", folder, g_strerror (errno));
-    return FALSE;
-  }
-  return (!job->csv || cloth_file_write_text (table, job->csv->str, error))
+  return cloth_folder_make (folder, error)
+      && (!job->csv || cloth_file_write_text (table, job->csv->str, error))
       && (!job->take || fit_track_take_write (job->take, error))
       && cloth_file_write_text (path, text, error);
 }

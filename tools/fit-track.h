@@ -22,7 +22,8 @@ G_BEGIN_DECLS
  * @threads: 0: all
  */
 typedef struct {
-  const gchar *rig, *tracker, *size, *near, *grid, *held, *output;
+  const gchar *rig, *output;
+  gchar *tracker, *size, *near, *grid, *held;
   gchar **backgrounds, **films;
   gdouble ground;
   gboolean anneal;

@@ -8,9 +8,7 @@
 
 #include "tools/gap-tool.h"
 
-#include <errno.h>
 #include <gio/gio.h>
-#include <glib/gstdio.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/prctl.h>
@@ -561,9 +559,8 @@ manage (const Arguments * arguments)
       g_build_filename (arguments->output, "spool", NULL);
   catch_interrupts ();
   if (load_list (&s, &error)) {
-    if (g_mkdir_with_parents (arguments->output, 0777) < 0)
-      cloth_file_fail (&error, errno, "make the folder", arguments->output);
-    else if (run_survey (&s, &error))
+    if (cloth_folder_make (arguments->output, &error)
+        && run_survey (&s, &error))
       code = conclude (&s, &error);
   }
   cloth_spool_free (s.spool);

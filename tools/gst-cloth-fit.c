@@ -3,9 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "config.h"
 
-#include <errno.h>
 #include <gio/gio.h>
-#include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
 
@@ -29,7 +27,6 @@ typedef struct
   gint seed, threads, evaluations;
   gboolean worker, resume, as_they_come;
   FitTrack track;
-  gchar *tracker, *size, *near, *grid, *held;
   gchar **rest;
 } Arguments;
 
@@ -537,18 +534,14 @@ run_track (const Arguments * a)
       || a->replay)
     return complain (BAD_USAGE, "--model, --spool, --worker, --resume, "
         "--as-they-come and --replay are not of the command track");
-  if (!a->rig || !a->tracker || !a->size || !a->output || !a->rest[1]
+  if (!a->rig || !a->track.tracker || !a->track.size || !a->output
+      || !a->rest[1]
       || !track.backgrounds)
     return complain (BAD_USAGE, "name the films and --rig, --tracker, "
         "--pattern-size, --background for each film, and --output");
   if (a->threads < 0)
     return complain (BAD_USAGE, "--threads: give 0 for all, or a number");
   track.rig = a->rig;
-  track.tracker = a->tracker;
-  track.size = a->size;
-  track.near = a->near;
-  track.grid = a->grid;
-  track.held = a->held;
   track.output = a->output;
   track.films = a->rest + 1;
   track.seed = a->seed;
@@ -561,8 +554,9 @@ check (const Arguments * a)
 {
   const gboolean searches = a->rest && !strcmp (a->rest[0], "search");
 
-  if (a->tracker || a->size || a->near || a->grid || a->held
-      || a->track.backgrounds || a->track.anneal || a->track.ground != 0)
+  if (a->track.tracker || a->track.size || a->track.near || a->track.grid
+      || a->track.held || a->track.backgrounds || a->track.anneal
+      || a->track.ground != 0)
     return complain (BAD_USAGE,
         "--tracker, --pattern-size, --background, "
         "--ground, --near, --grid, --held and --anneal are of the command track");
@@ -614,9 +608,8 @@ run (gconstpointer data)
     return complain (FAILED, "--model: %s", error->message);
   if (!load (a, &inputs, &error))
     return complain (FAILED, "%s", error->message);
-  if (!a->worker && g_mkdir_with_parents (a->output, 0777) != 0)
-    return complain (FAILED, "cannot make the folder “%s”: %s", a->output,
-        g_strerror (errno));
+  if (!a->worker && !cloth_folder_make (a->output, &error))
+    return complain (FAILED, "%s", error->message);
   /* a spool keeps what was done, so that its ends may be killed */
   if (!a->spool)
     catch_interrupts ();
@@ -703,9 +696,9 @@ main (int argc, char **argv)
     {"seed", 0, 0, G_OPTION_ARG_INT, &a.seed, "Of its random numbers (0)", "N"},
     {"threads", 0, 0, G_OPTION_ARG_INT, &a.threads,
         "Threads to use, 0 for all (0)", "N"},
-    {"tracker", 0, 0, G_OPTION_ARG_STRING, &a.tracker,
+    {"tracker", 0, 0, G_OPTION_ARG_STRING, &a.track.tracker,
         "Which points are followed, and how (track)", "NAME"},
-    {"pattern-size", 0, 0, G_OPTION_ARG_STRING, &a.size,
+    {"pattern-size", 0, 0, G_OPTION_ARG_STRING, &a.track.size,
         "Width and height of the cloth, as 63cm,67cm (track)", "W,H"},
     {"background", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &a.track.backgrounds,
           "What a camera sees without the cloth; one for each film (track)",
@@ -713,13 +706,13 @@ main (int argc, char **argv)
     {"ground", 0, 0, G_OPTION_ARG_DOUBLE, &a.track.ground,
           "Height of the lying cloth's surface in the rig's world, m (0) (track)",
         "Z"},
-    {"near", 0, 0, G_OPTION_ARG_STRING, &a.near,
+    {"near", 0, 0, G_OPTION_ARG_STRING, &a.track.near,
         "A place near to the print's top left corner, m (track)", "X,Y"},
-    {"grid", 0, 0, G_OPTION_ARG_STRING, &a.grid,
+    {"grid", 0, 0, G_OPTION_ARG_STRING, &a.track.grid,
           "Make DIR a take to fit a cloth to, with so many columns and rows of "
           "vertices (track)",
         "COLUMNS,ROWS"},
-    {"held", 0, 0, G_OPTION_ARG_STRING, &a.held,
+    {"held", 0, 0, G_OPTION_ARG_STRING, &a.track.held,
           "Vertices of it that hands hold, 0 the print's top left (track)",
         "VERTEX,…"},
     {"anneal", 0, 0, G_OPTION_ARG_NONE, &a.track.anneal,
@@ -736,11 +729,11 @@ main (int argc, char **argv)
   g_free (a.output);
   g_free (a.spool);
   g_free (a.replay);
-  g_free (a.tracker);
-  g_free (a.size);
-  g_free (a.near);
-  g_free (a.grid);
-  g_free (a.held);
+  g_free (a.track.tracker);
+  g_free (a.track.size);
+  g_free (a.track.near);
+  g_free (a.track.grid);
+  g_free (a.track.held);
   g_strfreev (a.track.backgrounds);
   g_strfreev (a.rest);
   return code;

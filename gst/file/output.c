@@ -47,6 +47,20 @@ cloth_file_fail (GError ** error, gint code, const gchar * doing,
   return FALSE;
 }
 
+/* @folder: a folder
+ * @error: #GIOErrorEnum
+ *
+ * Makes it, and those that it is in, where they are not there yet.
+ *
+ * Returns: whether it is there
+ */
+gboolean
+cloth_folder_make (const gchar * folder, GError ** error)
+{
+  return g_mkdir_with_parents (folder, 0777) == 0
+      || cloth_file_fail (error, errno, "make the folder", folder);
+}
+
 /* @path: what a file shall be called
  * @error: #GIOErrorEnum
  *

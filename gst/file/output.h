@@ -42,6 +42,7 @@ gint cloth_file_lock_new (gint fd);
 gint cloth_file_lock_old (gint fd);
 gint cloth_file_append (gint fd, gconstpointer data, gsize size);
 gint cloth_file_rename (const gchar * from, const gchar * to);
+gboolean cloth_folder_make (const gchar * folder, GError ** error);
 gboolean cloth_folder_sync (const gchar * folder, GError ** error);
 gboolean cloth_file_fail (GError ** error, gint code, const gchar * doing,
     const gchar * path);

@@ -445,8 +445,8 @@ make_folders (const ClothSpool * s, GError ** error)
   for (guint i = 0; i < G_N_ELEMENTS (folders); i++) {
     g_autofree gchar *path = g_build_filename (s->folder, folders[i], NULL);
 
-    if (g_mkdir_with_parents (path, 0777) < 0)
-      return cloth_file_fail (error, errno, "make the folder", path);
+    if (!cloth_folder_make (path, error))
+      return FALSE;
   }
   return TRUE;
 }

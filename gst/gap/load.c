@@ -83,8 +83,8 @@ make_recording (ClothDiagnosis * d, ClothTake * take,
   if (!observations
       || cloth_take_get_n_positions (take) == cloth_take_get_n_frames (take))
     return cloth_recording_new (take, error);
-  r = cloth_recording_new_observed (take, observations, model,
-      d->study.gain, &d->study.rollout, &counts, error);
+  r = cloth_recording_new_observed (take, observations, model, d->study.gain,
+      &d->study.rollout, &counts, error);
   if (r)
     note_observed (d, r->name, &counts);
   return r;

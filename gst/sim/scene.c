@@ -181,12 +181,6 @@ cloth_scene_sew (ClothScene * scene, const ClothSeamLine * line,
 }
 
 static gboolean
-is_held (const ClothHeld * held, gdouble time)
-{
-  return time >= held->from_s && time < held->until_s;
-}
-
-static gboolean
 read_clamps (ClothScene * scene, ClothTake * take, GError ** error)
 {
   gsize n = 3 * (gsize) scene->held->len;
@@ -226,7 +220,8 @@ hang_flat (ClothScene * scene)
   for (guint i = 0; i < scene->held->len; i++) {
     const ClothHeld *held = &g_array_index (scene->held, ClothHeld, i);
 
-    if (!is_held (held, scene->times[0]) || isnan (scene->clamps[3 * i]))
+    if (!cloth_held_holds (held, scene->times[0])
+        || isnan (scene->clamps[3 * i]))
       continue;
     for (guint k = 0; k < 3; k++)
       shift[k] += scene->clamps[3 * i + k] -
@@ -261,7 +256,8 @@ read_start (ClothScene * scene, ClothTake * take, GError ** error)
   for (guint i = 0; i < scene->held->len; i++) {
     const ClothHeld *held = &g_array_index (scene->held, ClothHeld, i);
 
-    if (is_held (held, scene->times[0]) && !isnan (scene->clamps[3 * i]))
+    if (cloth_held_holds (held, scene->times[0])
+        && !isnan (scene->clamps[3 * i]))
       memcpy (scene->positions + 3 * (gsize) held->vertex,
           scene->clamps + 3 * i, 3 * sizeof *scene->positions);
   }
@@ -535,8 +531,7 @@ check_held (const ClothScene * scene, gboolean open, GError ** error)
       const gdouble *place = scene->clamps +
           3 * ((gsize) frame * scene->held->len + i);
 
-      if (scene->times[frame] >= held->from_s &&
-          scene->times[frame] < held->until_s &&
+      if (cloth_held_holds (held, scene->times[frame]) &&
           !(isfinite (place[0] + place[1] + place[2]) || (open
                   && isnan (place[0]))))
         return cloth_file_invalid (error,
@@ -637,8 +632,8 @@ check_path (const ClothScene * scene, guint i, GError ** error)
         (b[2] - a[2]) * (b[2] - a[2]));
     const gdouble span = scene->times[frame] - scene->times[frame - 1];
 
-    if (is_held (held, scene->times[frame - 1])
-        && is_held (held, scene->times[frame])
+    if (cloth_held_holds (held, scene->times[frame - 1])
+        && cloth_held_holds (held, scene->times[frame])
         && !(way <= MAX_CLAMP_SPEED * span))
       return cloth_file_invalid (error,
           "the clamp of vertex %u jumps %g m between frames %u and %u, in %g s; "

@@ -50,6 +50,13 @@ typedef struct {
   GArray *seams;
 } ClothScene;
 
+/* Whether the path of a clamp was found in the cloth there, instead of logged; @at: frame · held + clamp. */
+static inline gboolean
+cloth_scene_is_found (const ClothScene * scene, gsize at)
+{
+  return scene->clamps_sd && scene->clamps_sd[at] > 0.;
+}
+
 ClothScene *cloth_scene_new (ClothTopology * topology, gdouble fps,
     guint n_frames);
 ClothScene *cloth_scene_new_from_take (ClothTake * take, GError ** error);

@@ -132,27 +132,20 @@ distance (const gfloat * a, const gfloat * b)
       (gdouble) a[2] - b[2]);
 }
 
-static gboolean
-is_held (const ClothTakeInfo * info, guint i, gdouble time)
-{
-  const ClothHeld *held = &g_array_index (info->held, ClothHeld, i);
-
-  return time >= held->from_s && time < held->until_s;
-}
-
 static void
 look_at_clamps (Pass * pass, const ClothTakeInfo * info, gdouble time,
     const gfloat * positions)
 {
   for (guint i = 0; i < info->held->len; i++) {
-    const gfloat *vertex = positions +
-        3 * (gsize) g_array_index (info->held, ClothHeld, i).vertex;
+    const ClothHeld *held = &g_array_index (info->held, ClothHeld, i);
+    const gfloat *vertex = positions + 3 * (gsize) held->vertex;
     const gdouble moved = distance (pass->clamps + 3 * i, pass->before + 3 * i);
     const gdouble away = distance (pass->clamps + 3 * i, vertex);
 
     if (isfinite (moved))
       pass->lengths[i] += moved;
-    pass->open[i] += isnan (pass->clamps[3 * i]) && is_held (info, i, time);
+    pass->open[i] += isnan (pass->clamps[3 * i])
+        && cloth_held_holds (held, time);
     if (isfinite (away))
       g_array_append_val ((GArray *) pass->distances->pdata[i], away);
   }

@@ -18,6 +18,13 @@ typedef struct {
   gdouble until_s;
 } ClothHeld;
 
+/* Whether a clamp holds what it holds at a time, seconds. */
+static inline gboolean
+cloth_held_holds (const ClothHeld * held, gdouble time)
+{
+  return time >= held->from_s && time < held->until_s;
+}
+
 /* @name: its name
  * @fps: frames a second, 0 when only times.npy says
  * @columns: vertices of a row of the grid, 0 with a mesh file

@@ -568,7 +568,7 @@ cloth_take_read_clamps (ClothTake * take, guint frame, gfloat * clamps,
   for (gsize i = 0; i < take->info->held->len; i++) {
     const ClothHeld *held = &g_array_index (take->info->held, ClothHeld, i);
 
-    if (time < held->from_s || time >= held->until_s)
+    if (!cloth_held_holds (held, time))
       continue;
     if (isnan (clamps[3 * i]) && isnan (clamps[3 * i + 1])
         && isnan (clamps[3 * i + 2]))

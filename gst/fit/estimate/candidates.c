@@ -176,8 +176,7 @@ find_clamps_square (const ClothRecording * r)
       const gsize at = (gsize) f * r->n + h->vertex;
       gdouble off[3];
 
-      if (r->seen[at] == 0. || r->times[f] < h->from_s
-          || r->times[f] >= h->until_s)
+      if (r->seen[at] == 0. || !cloth_held_holds (h, r->times[f]))
         continue;
       cloth_vec3_subtract (r->y + 3 * at, r->scene->clamps +
           3 * ((gsize) f * held->len + i), off);

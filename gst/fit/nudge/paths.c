@@ -5,7 +5,8 @@
  *   simulation that springs of the gain g draw to what was seen is off it, about the clamp, by
  *   e + J c + N(0, v).
  * Assumption: vertices about a clamp are off together, and as long as springs remember, so those of the
- *   frames between two knots count as one; what springs did 3/(ζ√g) ago is forgotten. Where a clamp takes the cloth is linear in small c.
+ *   frames between two knots count as one; what springs did 3/(ζ√g) ago is forgotten. Where a clamp takes
+ *   the cloth is linear in small c.
  * Formula: c = (JᵀJ/v + BᵀS⁻¹B)⁻¹ (Jᵀe/v − BᵀS⁻¹δ), v the variance that is left (Gauss–Newton). Knots that
  *   far apart have nothing to do with each other, so one simulation moves many at a time: every sixth.
  * Reference: Hasler, Asbach, Rosenhahn, Ohm and Seidel, Physically based tracking of cloth, 2006,
@@ -199,9 +200,9 @@ paths_init (Paths * p, ClothRecording * r, gdouble gain)
   *p = (Paths) {
   r};
   p->paths = g_new (guint, scene->held->len + 1);
-  for (guint i = 0; i < scene->held->len && scene->clamps_sd; i++)
+  for (guint i = 0; i < scene->held->len; i++)
     for (guint f = 0; f < r->n_frames; f++)
-      if (scene->clamps_sd[(gsize) f * scene->held->len + i] > 0.) {
+      if (cloth_scene_is_found (scene, (gsize) f * scene->held->len + i)) {
         p->paths[p->n_paths++] = i;
         break;
       }
@@ -297,20 +298,20 @@ simulate (Paths * p, const ClothModel * model, gdouble gain, guint n_models,
 
   quietly.failed = NULL;
   for (guint m = 0; m < n_models; m++) {
-    copies[m] = *p->r;
-    scenes[m] = *p->r->scene;
-    if (m > 0) {
-      const guint unknown = (m - 1) / p->period, phase = (m - 1) % p->period;
+    const guint unknown = (m - 1) / p->period, phase = (m - 1) % p->period;
 
-      scenes[m].clamps = g_memdup2 (p->r->scene->clamps,
-          size * sizeof (gdouble));
-      add_splines (p, scenes[m].clamps, unknown / 3, unknown % 3, phase,
-          p->period, NULL, 0);
-      copies[m].scene = &scenes[m];
-    }
-    targets[m] = &copies[m];
+    targets[m] = p->r;
     models[m] = model;
     gains[m] = gain;
+    if (m == 0)
+      continue;
+    copies[m] = *p->r;
+    scenes[m] = *p->r->scene;
+    scenes[m].clamps = g_memdup2 (p->r->scene->clamps, size * sizeof (gdouble));
+    add_splines (p, scenes[m].clamps, unknown / 3, unknown % 3, phase,
+        p->period, NULL, 0);
+    copies[m].scene = &scenes[m];
+    targets[m] = &copies[m];
   }
   good = cloth_rollout_nudged (targets, models, gains, n_models, &quietly,
       keep, p, sound, error);

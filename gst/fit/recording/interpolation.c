@@ -118,8 +118,7 @@ find_known (Bridge * b, guint frame, guint vertex)
     return FALSE;
   held = &g_array_index (scene->held, ClothHeld, clamp);
   path = scene->clamps + 3 * ((gsize) frame * scene->held->len + (guint) clamp);
-  if (r->times[frame] < held->from_s || r->times[frame] >= held->until_s
-      || isnan (path[0]))
+  if (!cloth_held_holds (held, r->times[frame]) || isnan (path[0]))
     return FALSE;
   memcpy (place (b, frame, vertex), path, 3 * sizeof *path);
   return TRUE;

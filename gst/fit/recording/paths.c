@@ -60,9 +60,8 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Path, path_clear);
 static gboolean
 is_held (const ClothRecording * r, guint held, guint frame)
 {
-  const ClothHeld *h = &g_array_index (r->scene->held, ClothHeld, held);
-
-  return r->times[frame] >= h->from_s && r->times[frame] < h->until_s;
+  return cloth_held_holds (&g_array_index (r->scene->held, ClothHeld, held),
+      r->times[frame]);
 }
 
 /* Whether a place is known in all directions. */
@@ -298,15 +297,16 @@ cloth_recording_place_held (ClothRecording * recording)
   const GArray *held = r->scene->held;
 
   for (gsize k = 0; k < (gsize) r->n_frames * held->len; k++) {
-    const ClothHeld *h = &g_array_index (held, ClothHeld, k % held->len);
-    const guint f = (guint) (k / held->len);
-    const gsize at = (gsize) f * r->n + h->vertex;
+    const guint i = (guint) (k % held->len), f = (guint) (k / held->len);
+    const guint vertex = g_array_index (held, ClothHeld, i).vertex;
+    const gsize at = (gsize) f * r->n + vertex;
 
-    if (r->scene->clamps_sd[k] > 0. && r->seen[at] == 0.
-        && r->times[f] >= h->from_s && r->times[f] < h->until_s)
+    if (!cloth_scene_is_found (r->scene, k) || !is_held (r, i, f))
+      continue;
+    if (r->seen[at] == 0.)
       memcpy (r->y + 3 * at, r->scene->clamps + 3 * k, 3 * sizeof *r->y);
-    if (f == 0 && r->scene->clamps_sd[k] > 0. && is_held (r, k % held->len, 0))
-      memcpy (r->scene->positions + 3 * (gsize) h->vertex,
+    if (f == 0)
+      memcpy (r->scene->positions + 3 * (gsize) vertex,
           r->scene->clamps + 3 * k, 3 * sizeof *r->y);
   }
 }
@@ -330,17 +330,16 @@ cloth_recording_open_paths (ClothRecording * recording)
 {
   ClothScene *scene = recording->scene;
 
-  for (gsize k = 0; scene->clamps_sd
-      && k < (gsize) recording->n_frames * scene->held->len; k++)
-    for (guint c = 0; scene->clamps_sd[k] > 0. && c < 3; c++)
+  for (gsize k = 0; k < (gsize) recording->n_frames * scene->held->len; k++)
+    for (guint c = 0; cloth_scene_is_found (scene, k) && c < 3; c++)
       scene->clamps[3 * k + c] = NAN;
 }
 
 /* @recording: a recording whose @y is known all over
  * @error: #ClothFitError when it can't be found
  *
- * Finds the paths of clamps where the scene's are NaN, and how well they are known.
- * Held vertices that nobody saw are put there.
+ * Finds the paths of clamps where the scene's are NaN, and how well they are known. Held vertices that nobody
+ * saw are put there.
  *
  * Returns: %FALSE when a path can't be found
  */

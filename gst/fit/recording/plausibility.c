@@ -188,16 +188,14 @@ find_start (const ClothRecording * r, guint held, gdouble scale)
   guint seen = 0;
 
   for (guint frame = 0; frame < r->n_frames && seen < N_FIRST; frame++) {
-    const gdouble *clamp = r->scene->clamps +
-        3 * ((gsize) frame * r->scene->held->len + held);
+    const gsize k = (gsize) frame * r->scene->held->len + held;
+    const gdouble *clamp = r->scene->clamps + 3 * k;
     const gdouble at[3] = { scale * clamp[0], scale * clamp[1],
       scale * clamp[2]
     };
 
-    if (r->times[frame] < h->from_s || r->times[frame] >= h->until_s
-        || !is_seen (r, frame, h->vertex) || (r->scene->clamps_sd
-            && r->scene->clamps_sd[(gsize) frame * r->scene->held->len +
-                held] > 0.))
+    if (!cloth_held_holds (h, r->times[frame])
+        || !is_seen (r, frame, h->vertex) || cloth_scene_is_found (r->scene, k))
       continue;
     nearest = fmin (nearest, distance (at, place (r, frame, h->vertex)));
     seen++;

@@ -34,8 +34,8 @@ cloth_synthesis_options_init (ClothSynthesisOptions * options)
 
 static ClothRecording *
 record (const ClothSynthesisInput * input, const ClothModel * model,
-    const ClothSynthesisOptions * o,
-    ClothObservedCounts * counts, GError ** error)
+    const ClothSynthesisOptions * o, ClothObservedCounts * counts,
+    GError ** error)
 {
   if (!input->observations)
     return cloth_recording_new (input->take, error);

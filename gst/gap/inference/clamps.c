@@ -64,8 +64,7 @@ cloth_gap_find_clamps_off (const ClothRecording * recording, gdouble * n)
     const gsize at = k / n_held * r->n + held->vertex;
 
     /* a path that was found in the cloth is no log */
-    if (r->seen[at] == 0. || (r->scene->clamps_sd
-            && r->scene->clamps_sd[k] > 0.)
+    if (r->seen[at] == 0. || cloth_scene_is_found (r->scene, k)
         || !cloth_gap_is_surely_held (r, held, k / n_held))
       continue;
     for (guint c = 0; c < 3; c++) {

@@ -3,7 +3,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/gap/report/report.h"
 
-#include <errno.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <math.h>
@@ -524,14 +523,8 @@ cloth_gap_result_write (const ClothGapResult * result, const gchar * folder,
   g_autofree gchar *json = g_build_filename (folder, "gap.json", NULL);
   g_autofree gchar *report = g_build_filename (folder, "report.html", NULL);
 
-  if (g_mkdir_with_parents (folder, 0777) != 0) {
-    gint code = errno;
-
-    g_set_error (error, G_IO_ERROR, g_io_error_from_errno (code),
-        "cannot make the folder “%s”: %s", folder, g_strerror (code));
-    return FALSE;
-  }
-  return write_model (result->model, folder, error) &&
+  return cloth_folder_make (folder, error) &&
+      write_model (result->model, folder, error) &&
       write_rig (result->rig, folder, error) &&
       cloth_gap_report_write (result, report, error) &&
       cloth_gap_result_write_json (result, json, error);

@@ -99,14 +99,8 @@ take (const ClothFlatParams * params, const ClothFlatView * view,
   problem->area += sum[0];
   if (!cloth_flat_reach (view->camera, params->ground, (const gdouble[2]) {
             sum[1] / sum[0], sum[2] / sum[0]
-          }, xy)) {
-    g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SHAPE,
-        "camera “%s” sees the cloth above the horizon of the ground: is the "
-        "rig's z axis up, and the ground at z = %g m?",
-        view->camera->name ? view->camera->name : "without a name",
-        params->ground);
+          }, xy, error))
     return FALSE;
-  }
   for (guint k = 0; k < 2; k++)
     middle[k] += xy[k] / problem->n;
   return TRUE;

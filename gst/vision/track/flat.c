@@ -57,9 +57,9 @@ cloth_flat_default_params (gdouble width, gdouble height)
 }
 
 static const gchar *
-get_name (const ClothFlatView * view)
+get_name (const ClothCamera * camera)
 {
-  return view->camera->name ? view->camera->name : "without a name";
+  return camera->name ? camera->name : "without a name";
 }
 
 /* ---- silhouettes ---- */
@@ -92,7 +92,7 @@ cloth_flat_check (const ClothFlatParams * params, guint n_views,
         || views[c].mask.height != views[c].camera->height) {
       g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_PARAMETER,
           "camera “%s”: its silhouette has %d × %d pixels, its pictures in "
-          "the rig %d × %d", get_name (&views[c]), views[c].mask.width,
+          "the rig %d × %d", get_name (views[c].camera), views[c].mask.width,
           views[c].mask.height, views[c].camera->width,
           views[c].camera->height);
       return FALSE;
@@ -134,7 +134,7 @@ static gboolean
 refuse (const ClothFlatView * view, const gchar * what, GError ** error)
 {
   g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SILHOUETTE,
-      "camera “%s”: %s", get_name (view), what);
+      "camera “%s”: %s", get_name (view->camera), what);
   return FALSE;
 }
 
@@ -203,21 +203,26 @@ cloth_flat_find_piece (const ClothFlatView * view, GError ** error)
  * @ground: z of a plane, m
  * @px: a place of its picture, px
  * @xy: (out): where its ray meets the plane, m
+ * @error: %CLOTH_FLAT_ERROR_SHAPE
  *
  * Returns: %FALSE when it doesn't meet it before the camera
  */
 gboolean
 cloth_flat_reach (const ClothCamera * camera, gdouble ground,
-    const gdouble px[2], gdouble xy[2])
+    const gdouble px[2], gdouble xy[2], GError ** error)
 {
   ClothRay ray;
-  gdouble along;
+  gdouble along = NAN;
 
-  if (!cloth_marker_cast (camera, px, &ray))
+  if (cloth_marker_cast (camera, px, &ray))
+    along = (ground - ray.origin[2]) / ray.direction[2];
+  if (!(along > 0 && isfinite (along))) {
+    g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SHAPE,
+        "camera “%s” sees the cloth above the horizon of the ground: is the "
+        "rig's z axis up, and the ground at z = %g m?", get_name (camera),
+        ground);
     return FALSE;
-  along = (ground - ray.origin[2]) / ray.direction[2];
-  if (!(along > 0 && isfinite (along)))
-    return FALSE;
+  }
   for (guint k = 0; k < 2; k++)
     xy[k] = ray.origin[k] + along * ray.direction[k];
   return TRUE;
@@ -233,13 +238,8 @@ add_point (const ClothFlatView * view, gdouble ground, gdouble x, gdouble y,
   gdouble xy[2];
   Point point;
 
-  if (!cloth_flat_reach (view->camera, ground, px, xy)) {
-    g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SHAPE,
-        "camera “%s” sees the cloth above the horizon of the ground: is the "
-        "rig's z axis up, and the ground at z = %g m?", get_name (view),
-        ground);
+  if (!cloth_flat_reach (view->camera, ground, px, xy, error))
     return FALSE;
-  }
   point = (Point) {
   xy[0], xy[1]};
   g_array_append_val (points, point);
@@ -493,7 +493,8 @@ find_corners (const ClothFlatParams * params, const ClothFlatView * view,
   if (!fit_sides (points, found, &rms) || rms > params->straight) {
     g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SHAPE,
         "camera “%s”: the outline has no four straight sides; the cloth must "
-        "lie flat on the ground in the first picture%s", get_name (view), cut);
+        "lie flat on the ground in the first picture%s",
+        get_name (view->camera), cut);
     return FALSE;
   }
   for (guint k = 0; k < 4; k++)
@@ -508,8 +509,8 @@ find_corners (const ClothFlatParams * params, const ClothFlatView * view,
     g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_SHAPE,
         "camera “%s” sees a rectangle of %.3f × %.3f m, the cloth has %.3f × "
         "%.3f m: are its size, the rig and the ground at z = %g m right, and "
-        "does it lie flat?%s", get_name (view), sides[0], sides[1], size[0],
-        size[1], params->ground, cut);
+        "does it lie flat?%s", get_name (view->camera), sides[0], sides[1],
+        size[0], size[1], params->ground, cut);
     return FALSE;
   }
   return TRUE;
@@ -566,7 +567,7 @@ average (const ClothFlatParams * params, guint n, const ClothFlatView * views,
     g_set_error (error, CLOTH_FLAT_ERROR, CLOTH_FLAT_ERROR_DISAGREE,
         "camera “%s” sees a corner of the cloth %.0f mm from where the others "
         "see it: is it where the rig says, and the ground at z = %g m?",
-        get_name (&views[who]), 1e3 * worst, params->ground);
+        get_name (views[who].camera), 1e3 * worst, params->ground);
     return FALSE;
   }
   return TRUE;
@@ -709,7 +710,7 @@ cloth_flat_uv (const ClothFlatPose * pose, const ClothCamera * camera,
   const gdouble c = cos (pose->angle), s = sin (pose->angle);
   gdouble xy[2];
 
-  if (!cloth_flat_reach (camera, pose->ground, px, xy))
+  if (!cloth_flat_reach (camera, pose->ground, px, xy, NULL))
     return FALSE;
   uv[0] = c * (xy[0] - pose->x) + s * (xy[1] - pose->y);
   uv[1] = s * (xy[0] - pose->x) - c * (xy[1] - pose->y);

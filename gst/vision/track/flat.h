@@ -85,7 +85,7 @@ gboolean cloth_flat_check (const ClothFlatParams * params, guint n_views,
     const ClothFlatView * views, GError ** error);
 guint8 *cloth_flat_find_piece (const ClothFlatView * view, GError ** error);
 gboolean cloth_flat_reach (const ClothCamera * camera, gdouble ground,
-    const gdouble px[2], gdouble xy[2]);
+    const gdouble px[2], gdouble xy[2], GError ** error);
 void cloth_flat_sort (ClothFlatPoses * poses, const gdouble * near);
 
 void cloth_flat_place (const ClothFlatPose * pose, const gdouble uv[2],

@@ -16,8 +16,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "gst/cv/cv.h"
 #include "gst/math/statistics.h"
+#include "gst/vision/track/flow.h"
 
 /* Neighbours of a vertex whose distances say how far apart they usually are. */
 #define REACH 2
@@ -26,10 +26,9 @@ struct _ClothFollower
 {
   guint columns, rows, n;
   ClothGridVertex *last;        /* of the picture before */
-  GByteArray *picture;          /* it */
-  gint width, height;           /* 0: none */
-  gfloat *from, *to, *back;     /* of those that are followed */
-  guint8 *found, *returned;
+  ClothFlow *flow;              /* from it */
+  gfloat *from, *to;            /* of those that are followed */
+  guint8 *found;
   guint *list;
   gdouble *apart;               /* scratch */
 };
@@ -57,12 +56,10 @@ cloth_follower_new (guint columns, guint rows)
   f->rows = rows;
   f->n = columns * rows;
   f->last = g_new0 (ClothGridVertex, f->n);
-  f->picture = g_byte_array_new ();
+  f->flow = cloth_flow_new ();
   f->from = g_new (gfloat, 2 * f->n);
   f->to = g_new (gfloat, 2 * f->n);
-  f->back = g_new (gfloat, 2 * f->n);
   f->found = g_new (guint8, f->n);
-  f->returned = g_new (guint8, f->n);
   f->list = g_new (guint, f->n);
   f->apart = g_new (gdouble, (2 * REACH + 1) * (2 * REACH + 1));
   return f;
@@ -76,12 +73,10 @@ cloth_follower_free (ClothFollower * follower)
   if (!follower)
     return;
   g_free (follower->last);
-  g_byte_array_unref (follower->picture);
+  cloth_flow_free (follower->flow);
   g_free (follower->from);
   g_free (follower->to);
-  g_free (follower->back);
   g_free (follower->found);
-  g_free (follower->returned);
   g_free (follower->list);
   g_free (follower->apart);
   g_free (follower);
@@ -94,20 +89,7 @@ cloth_follower_free (ClothFollower * follower)
 void
 cloth_follower_reset (ClothFollower * follower)
 {
-  follower->width = follower->height = 0;
-}
-
-static void
-keep (ClothFollower * f, const ClothImage * image,
-    const ClothGridVertex * vertices)
-{
-  g_byte_array_set_size (f->picture, (guint) (image->width * image->height));
-  for (gint y = 0; y < image->height; y++)
-    memcpy (f->picture->data + (gsize) y * image->width,
-        image->data + (gsize) y * image->stride, (gsize) image->width);
-  f->width = image->width;
-  f->height = image->height;
-  memcpy (f->last, vertices, f->n * sizeof *f->last);
+  cloth_flow_reset (follower->flow);
 }
 
 static gboolean
@@ -225,33 +207,21 @@ cloth_follower_run (ClothFollower * follower, const ClothFollowParams * params,
     GError ** error)
 {
   ClothFollower *f = follower;
-  const ClothCvPicture now =
-      { image->data, image->width, image->height, image->stride };
-  const ClothCvPicture before = { f->picture->data, f->width, f->height,
-    f->width
-  };
   const ClothCvFlowParams flow = { params->window, params->levels };
   const gdouble drift = params->drift * params->drift;
   guint n = 0;
 
   *n_followed = 0;
-  if (f->width == image->width && f->height == image->height)
+  if (cloth_flow_goes_on (f->flow, image))
     n = list_lost (f, vertices);
-  if (n && (!cloth_cv_flow (&before, &now, &flow, n, f->from, f->to, f->found,
-              error)
-          || !cloth_cv_flow (&now, &before, &flow, n, f->to, f->back,
-              f->returned, error)))
+  if (!cloth_flow_run (f->flow, &flow, params->back, image, n, f->from, f->to,
+          f->found, error))
     return FALSE;
   for (guint i = 0; i < n; i++) {
     const ClothGridVertex *last = &f->last[f->list[i]];
     ClothGridVertex *to = &vertices[f->list[i]];
 
-    if (!f->found[i] || !f->returned[i]
-        || hypot (f->back[2 * i] - f->from[2 * i],
-            f->back[2 * i + 1] - f->from[2 * i + 1]) > params->back
-        || !(f->to[2 * i] >= 0 && f->to[2 * i + 1] >= 0
-            && f->to[2 * i] <= image->width - 1
-            && f->to[2 * i + 1] <= image->height - 1)
+    if (!f->found[i]
         || last->xx + drift > params->uncertain * params->uncertain
         || last->yy + drift > params->uncertain * params->uncertain)
       continue;
@@ -272,6 +242,7 @@ cloth_follower_run (ClothFollower * follower, const ClothFollowParams * params,
       CLOTH_GRID_UNSEEN, FALSE, NAN, NAN, NAN, NAN, NAN};
     *n_followed += f->found[i];
   }
-  keep (f, image, vertices);
+  memcpy (f->last, vertices, f->n * sizeof *f->last);
+  cloth_flow_keep (f->flow, image);
   return TRUE;
 }

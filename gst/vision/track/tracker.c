@@ -24,6 +24,7 @@
 
 #include "gst/rig/rig.h"
 #include "gst/vision/track/combine.h"
+#include "gst/vision/track/flow.h"
 #include "gst/vision/track/seek.h"
 
 #define BYTES CLOTH_CV_SIFT_BYTES
@@ -74,10 +75,10 @@ struct _ClothTracker
   guint claims_size;
 
   /* optical flow: the pictures before, and sights or features that are followed */
-  GByteArray **pictures;
+  ClothFlow **flows;
   GArray **waiting;             /* without (u, v): places in them, px */
-  gfloat *from, *to, *back;
-  guint8 *found, *returned, *lost;
+  gfloat *from, *to;
+  guint8 *found, *lost;
   gdouble *uv, *px;
   guint *list;
   guint size;
@@ -196,10 +197,10 @@ cloth_tracker_new (ClothTrackerKind kind, const ClothTrackerParams * params,
   t->sights = g_array_new (FALSE, FALSE, sizeof (Sight));
   t->markers = g_array_new (FALSE, FALSE, sizeof (ClothTrackedMarker));
   t->features = g_array_new (FALSE, FALSE, sizeof (ClothTrackedFeature));
-  t->pictures = g_new (GByteArray *, n_cameras);
+  t->flows = g_new (ClothFlow *, n_cameras);
   t->waiting = g_new (GArray *, n_cameras);
   for (guint c = 0; c < n_cameras; c++) {
-    t->pictures[c] = g_byte_array_new ();
+    t->flows[c] = cloth_flow_new ();
     t->waiting[c] = g_array_new (FALSE, FALSE, 2 * sizeof (gfloat));
   }
   t->crest = cloth_crest_new ();
@@ -216,10 +217,10 @@ cloth_tracker_free (ClothTracker * tracker)
   if (!t)
     return;
   for (guint c = 0; c < t->n_cameras; c++) {
-    g_byte_array_unref (t->pictures[c]);
+    cloth_flow_free (t->flows[c]);
     g_array_unref (t->waiting[c]);
   }
-  g_free (t->pictures);
+  g_free (t->flows);
   g_free (t->waiting);
   g_array_unref (t->tracks);
   g_array_unref (t->sights);
@@ -230,9 +231,7 @@ cloth_tracker_free (ClothTracker * tracker)
   g_free (t->claims);
   g_free (t->from);
   g_free (t->to);
-  g_free (t->back);
   g_free (t->found);
-  g_free (t->returned);
   g_free (t->lost);
   g_free (t->uv);
   g_free (t->px);
@@ -567,24 +566,11 @@ make_room (ClothTracker * t, guint n)
   t->size = n;
   t->from = g_renew (gfloat, t->from, 2 * n);
   t->to = g_renew (gfloat, t->to, 2 * n);
-  t->back = g_renew (gfloat, t->back, 2 * n);
   t->found = g_renew (guint8, t->found, n);
-  t->returned = g_renew (guint8, t->returned, n);
   t->lost = g_renew (guint8, t->lost, n);
   t->uv = g_renew (gdouble, t->uv, 2 * n);
   t->px = g_renew (gdouble, t->px, 2 * n);
   t->list = g_renew (guint, t->list, n);
-}
-
-static void
-keep_picture (ClothTracker * t, guint camera, const ClothImage * image)
-{
-  GByteArray *to = t->pictures[camera];
-
-  g_byte_array_set_size (to, (guint) (image->width * image->height));
-  for (gint y = 0; y < image->height; y++)
-    memcpy (to->data + (gsize) y * image->width,
-        image->data + (gsize) y * image->stride, (gsize) image->width);
 }
 
 /* Follows @n points from t->from to t->to, and, if @returns, back; t->found has those that are
@@ -593,29 +579,13 @@ static gboolean
 flow (ClothTracker * t, guint camera, const ClothImage * image, guint n,
     gboolean returns, GError ** error)
 {
-  const ClothCvPicture now =
-      { image->data, image->width, image->height, image->stride };
-  const ClothCvPicture before = { t->pictures[camera]->data, image->width,
-    image->height, image->width
-  };
-
-  if (n == 0)
-    return TRUE;
-  if (!cloth_cv_flow (&before, &now, &t->params.flow, n, t->from, t->to,
+  if (!cloth_flow_run (t->flows[camera], &t->params.flow, returns ?
+          t->params.back : CLOTH_FLOW_ANYWHERE, image, n, t->from, t->to,
           t->found, error))
     return FALSE;
-  if (returns && !cloth_cv_flow (&now, &before, &t->params.flow, n, t->to,
-          t->back, t->returned, error))
-    return FALSE;
-  for (guint i = 0; i < n; i++) {
-    const gfloat *from = t->from + 2 * i, *to = t->to + 2 * i;
-
-    t->found[i] = t->found[i] && to[0] >= 0 && to[1] >= 0
-        && to[0] <= image->width - 1 && to[1] <= image->height - 1
-        && hypot (to[0] - from[0], to[1] - from[1]) <= t->params.motion_px
-        && (!returns || (t->returned[i] && hypot (t->back[2 * i] - from[0],
-                t->back[2 * i + 1] - from[1]) <= t->params.back));
-  }
+  for (guint i = 0; i < n; i++)
+    t->found[i] = t->found[i] && hypot (t->to[2 * i] - t->from[2 * i],
+        t->to[2 * i + 1] - t->from[2 * i + 1]) <= t->params.motion_px;
   return TRUE;
 }
 
@@ -776,7 +746,7 @@ cloth_tracker_start (ClothTracker * tracker, const ClothFlatPose * pose,
   if (!is_flow (t))
     start_descriptors (t, views);
   for (guint c = 0; c < t->n_cameras && is_flow (t); c++) {
-    keep_picture (t, c, &views[c].image);
+    cloth_flow_keep (t->flows[c], &views[c].image);
     wait_for_next (t, c, &views[c].features);
   }
   report (t);
@@ -807,7 +777,7 @@ cloth_tracker_run (ClothTracker * tracker, const ClothTrackerView * views,
   t->frame++;
   if (!is_flow (t))
     run_descriptors (t, views);
-  report (t);
+  g_array_set_size (t->features, 0);
   for (guint c = 0; c < t->n_cameras && is_flow (t); c++) {
     if (t->kind == CLOTH_TRACKER_UVLESS ?
         !run_uvless (t, c, &views[c], error) :
@@ -815,9 +785,9 @@ cloth_tracker_run (ClothTracker * tracker, const ClothTrackerView * views,
       t->started = FALSE;
       return FALSE;
     }
-    keep_picture (t, c, &views[c].image);
+    cloth_flow_keep (t->flows[c], &views[c].image);
   }
-  if (t->kind == CLOTH_TRACKER_LUCAS_KANADE)
+  if (t->kind != CLOTH_TRACKER_UVLESS)
     report (t);
   return TRUE;
 }

@@ -25,6 +25,12 @@ typedef struct
   gboolean good;
 } Triangle;
 
+/* A side of a triangle: its two ends, and 3 · triangle + the corner opposite of it. */
+typedef struct
+{
+  guint low, high, of;
+} Side;
+
 typedef struct
 {
   gdouble uv[2];
@@ -38,7 +44,7 @@ struct _ClothVertices
   ClothDelaunay *delaunay;
   GArray *features, *places;    /* in the order of (u, v), each once: (u, v), then px */
   GArray *triangles;
-  GHashTable *sides;            /* of two corners → triangle and side */
+  GArray *sides;                /* of the triangles */
 };
 
 /* Returns: the usual ones
@@ -70,8 +76,7 @@ cloth_vertices_new (guint columns, guint rows, gdouble width, gdouble height)
   self->features = g_array_new (FALSE, FALSE, sizeof (Feature));
   self->places = g_array_new (FALSE, FALSE, sizeof (gdouble));
   self->triangles = g_array_new (FALSE, FALSE, sizeof (Triangle));
-  self->sides = g_hash_table_new_full (g_int64_hash, g_int64_equal, g_free,
-      NULL);
+  self->sides = g_array_new (FALSE, FALSE, sizeof (Side));
   return self;
 }
 
@@ -86,7 +91,7 @@ cloth_vertices_free (ClothVertices * vertices)
   g_array_unref (vertices->features);
   g_array_unref (vertices->places);
   g_array_unref (vertices->triangles);
-  g_hash_table_unref (vertices->sides);
+  g_array_unref (vertices->sides);
   g_free (vertices);
 }
 
@@ -115,32 +120,44 @@ longest_side (const gdouble * places, const guint corner[3])
   return longest;
 }
 
-/* Which triangle lies beyond each side. */
+static gint
+compare_sides (gconstpointer a, gconstpointer b)
+{
+  const Side *x = a, *y = b;
+
+  if (x->low != y->low)
+    return x->low < y->low ? -1 : 1;
+  if (x->high != y->high)
+    return x->high < y->high ? -1 : 1;
+  return (x->of > y->of) - (x->of < y->of);
+}
+
+/* Which triangle lies beyond each side: no side has more than two. */
 static void
 link_triangles (ClothVertices * self)
 {
-  g_hash_table_remove_all (self->sides);
-  for (guint t = 0; t < self->triangles->len; t++) {
-    Triangle *triangle = &g_array_index (self->triangles, Triangle, t);
+  Triangle *triangles = (Triangle *) (gpointer) self->triangles->data;
+  const Side *sides;
 
+  g_array_set_size (self->sides, 0);
+  for (guint t = 0; t < self->triangles->len; t++)
     for (guint i = 0; i < 3; i++) {
-      const guint a = triangle->corner[(i + 1) % 3];
-      const guint b = triangle->corner[(i + 2) % 3];
-      const gint64 key = (gint64) MIN (a, b) << 32 | MAX (a, b);
-      gpointer other;
+      const guint a = triangles[t].corner[(i + 1) % 3];
+      const guint b = triangles[t].corner[(i + 2) % 3];
+      const Side side = { MIN (a, b), MAX (a, b), 3 * t + i };
 
-      triangle->across[i] = NONE;
-      if (g_hash_table_lookup_extended (self->sides, &key, NULL, &other)) {
-        const guint side = GPOINTER_TO_UINT (other);
-
-        triangle->across[i] = side / 3;
-        g_array_index (self->triangles, Triangle,
-            side / 3).across[side % 3] = t;
-      } else {
-        g_hash_table_insert (self->sides, g_memdup2 (&key, sizeof key),
-            GUINT_TO_POINTER (3 * t + i));
-      }
+      triangles[t].across[i] = NONE;
+      g_array_append_val (self->sides, side);
     }
+  g_array_sort (self->sides, compare_sides);
+  sides = (const Side *) (gpointer) self->sides->data;
+  for (guint s = 1; s < self->sides->len; s++) {
+    const guint a = sides[s - 1].of, b = sides[s].of;
+
+    if (sides[s - 1].low != sides[s].low || sides[s - 1].high != sides[s].high)
+      continue;
+    triangles[a / 3].across[a % 3] = b / 3;
+    triangles[b / 3].across[b % 3] = a / 3;
   }
 }
 
@@ -265,6 +282,7 @@ place_in (const ClothVertices * self, const Triangle * triangle,
       ClothGridVertex *vertex = &grid[row * (gint) self->columns + column];
       const gdouble at[2] = { column * du, row * dv };
       gdouble weights[3], place[2], noise;
+      ClothGridVertex placed;
 
       find_weights (uv, triangle->corner, at, weights);
       if (vertex->state != CLOTH_GRID_UNSEEN || weights[0] < 0.
@@ -273,13 +291,12 @@ place_in (const ClothVertices * self, const Triangle * triangle,
       mix (px, triangle->corner, weights, place);
       noise = spread * spread * (weights[0] * weights[0] +
           weights[1] * weights[1] + weights[2] * weights[2]);
-      *vertex = (ClothGridVertex) {
+      placed = (ClothGridVertex) {
       CLOTH_GRID_FOLLOWED, mirrored, place[0], place[1], noise, 0., noise};
-      if (add_bend (self, triangle, uv, px, at, vertex))
-        n++;
-      else
-        *vertex = (ClothGridVertex) {
-        CLOTH_GRID_UNSEEN,.x = NAN,.y = NAN};
+      if (!add_bend (self, triangle, uv, px, at, &placed))
+        continue;
+      *vertex = placed;
+      n++;
     }
   return n;
 }
