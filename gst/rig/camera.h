@@ -36,6 +36,7 @@ typedef enum {
  * @k_sd: standard deviations of @k
  * @r_sd: standard deviations of a small rotation about the camera's axes, rad
  * @t_sd: standard deviations of @t, m
+ * @offset_sd: standard deviation of @offset_s, s
  */
 typedef struct {
   gchar *name;
@@ -47,7 +48,7 @@ typedef struct {
   gdouble t[3];
   gchar *device;
   gdouble rolling_shutter_s, offset_s;
-  gdouble K_sd[4], k_sd[8], r_sd[3], t_sd[3];
+  gdouble K_sd[4], k_sd[8], r_sd[3], t_sd[3], offset_sd;
 } ClothCamera;
 
 /* Columns of the derivative with respect to a camera's parameters, in this order:

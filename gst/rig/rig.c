@@ -187,7 +187,8 @@ check_camera (const ClothCamera * c, const gchar * where, GError ** error)
   if (!all_finite (c->K, 9) || !all_finite (c->k, 8) || !all_finite (c->R, 9)
       || !all_finite (c->t, 3) || !all_finite (c->K_sd, 4)
       || !all_finite (c->k_sd, 8) || !all_finite (c->r_sd, 3)
-      || !all_finite (c->t_sd, 3) || !isfinite (c->rolling_shutter_s)
+      || !all_finite (c->t_sd, 3) || !isfinite (c->offset_sd)
+      || !isfinite (c->rolling_shutter_s)
       || !isfinite (c->offset_s))
     return cloth_rig_invalid (error, where, "",
         "holds a number that is not finite");

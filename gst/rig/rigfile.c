@@ -136,7 +136,7 @@ read_deviations (JsonNode * node, const gchar * camera, ClothCamera * c,
     GError ** error)
 {
   static const gchar *const known[] = { "K", "distortion", "rotation", "t",
-    NULL
+    "offset_s", NULL
   };
   g_autofree gchar *where = g_strdup_printf ("%s.standard_deviations", camera);
   struct
@@ -158,6 +158,13 @@ read_deviations (JsonNode * node, const gchar * camera, ClothCamera * c,
   object = json_node_get_object (node);
   if (!check_keys (object, where, known, error))
     return FALSE;
+  if (json_object_has_member (object, "offset_s")
+      && !read_number (json_object_get_member (object, "offset_s"), where,
+          "offset_s", &c->offset_sd, error))
+    return FALSE;
+  if (c->offset_sd < 0)
+    return cloth_rig_invalid (error, where, "offset_s", "is negative: %g",
+        c->offset_sd);
   for (guint i = 0; i < G_N_ELEMENTS (lists); i++) {
     if (json_object_has_member (object, lists[i].key)) {
       if (!read_list (json_object_get_member (object, lists[i].key), where,
@@ -371,12 +378,14 @@ add_camera (ClothJsonWriter * w, const ClothCamera * c)
   add_matrix (w, "R", c->R);
   cloth_json_writer_set_one_line (w, FALSE);
   if (any_set (c->K_sd, 4) || any_set (c->k_sd, n) || any_set (c->r_sd, 3)
-      || any_set (c->t_sd, 3)) {
+      || any_set (c->t_sd, 3) || c->offset_sd != 0) {
     begin_line (w, "standard_deviations");
     cloth_json_writer_numbers (w, "K", c->K_sd, 4);
     cloth_json_writer_numbers (w, "distortion", c->k_sd, n);
     cloth_json_writer_numbers (w, "rotation", c->r_sd, 3);
     cloth_json_writer_numbers (w, "t", c->t_sd, 3);
+    if (c->offset_sd != 0)
+      cloth_json_writer_number (w, "offset_s", c->offset_sd);
     end_line (w);
   }
   cloth_json_writer_end_object (w);

@@ -78,6 +78,7 @@ test_save (void)
   rig->cameras[1].lens = CLOTH_LENS_BROWN8;
   rig->cameras[1].k[7] = 1. / 3;
   rig->cameras[1].t_sd[0] = 1e-7 / 3;
+  rig->cameras[0].offset_sd = 1e-3 / 3;
   rig->cameras[0].device = g_strdup ("quote \" and ü");
   g_assert_true (cloth_rig_save (rig, a, &error));
   again = cloth_rig_load (a, &error);
@@ -93,6 +94,7 @@ test_save (void)
         again->cameras[i].k, sizeof rig->cameras[i].k);
   }
   g_assert_cmpfloat (again->cameras[1].t_sd[0], ==, 1e-7 / 3);
+  g_assert_cmpfloat (again->cameras[0].offset_sd, ==, 1e-3 / 3);
   g_assert_cmpstr (again->cameras[0].device, ==, rig->cameras[0].device);
   g_assert_true (cloth_rig_save (again, b, &error));
   g_assert_true (g_file_get_contents (a, &text_a, NULL, NULL));
@@ -115,7 +117,6 @@ test_save (void)
   g_assert_cmpint (g_rmdir (dir), ==, 0);
 }
 
-/* What only some cameras have is written when there is any of it. */
 /* The example of docs/formats.md is what the writer writes, and where it says the cameras are. */
 static void
 test_example (void)
@@ -317,6 +318,10 @@ static const Bad bads[] = {
   {"\"/dev/video0\"", "[]", CLOTH_RIG_ERROR_VALUE, "device"},
   {"[1,2,3,4]", "[1,2,3]", CLOTH_RIG_ERROR_VALUE, "standard_deviations"},
   {"[1,2,3,4]", "[1,2,-3,4]", CLOTH_RIG_ERROR_VALUE, "-3"},
+  {"[1,2,3]}", "[1,2,3],\"offset_s\":-1}", CLOTH_RIG_ERROR_VALUE,
+      "standard_deviations.offset_s: is negative"},
+  {"[1,2,3]}", "[1,2,3],\"offset_s\":[1]}", CLOTH_RIG_ERROR_VALUE,
+      "standard_deviations.offset_s"},
   {"[1,2,3]}", "[1,2,3],\"R\":3}", CLOTH_RIG_ERROR_VALUE, "unknown key"},
   {"}]}", "}", NOT_JSON, "not JSON"},
   {"{\"version\"", "/* */{\"version\"", NOT_JSON, "0x2f"},

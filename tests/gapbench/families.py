@@ -229,7 +229,7 @@ def interpolate(values, times):
                                                 s * (3. * (p[1] - p[2]) + p[3] - p[0])))
 
 
-def write_take(folder, take, positions, clamps, times=None):
+def write_take(folder, take, positions, clamps, times=None, spread=None):
     os.makedirs(folder)
     with open(os.path.join(folder, 'take.json'), 'w', encoding='utf-8') as file:
         json.dump(dict({'version': 1}, **take), file)
@@ -237,3 +237,7 @@ def write_take(folder, take, positions, clamps, times=None):
     numpy.save(os.path.join(folder, 'clamps.npy'), clamps.astype('float32'))
     if times is not None:
         numpy.save(os.path.join(folder, 'times.npy'), numpy.asarray(times, float))
+    if spread is not None:
+        upper = numpy.stack([spread[..., a, b] for a in range(3) for b in range(a, 3)], axis=-1)
+        upper[numpy.isnan(positions[..., 0])] = numpy.nan
+        numpy.save(os.path.join(folder, 'covariance.npy'), upper.astype('float32'))

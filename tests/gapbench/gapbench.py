@@ -11,7 +11,8 @@
 What is there already is not made again, so that a run that was stopped goes on.
 --set NAME says which cases (own): few, own, outside, pairs, nulls, unknown, strangers, local;
 --cases N takes that many of them by chance; --seed N makes other cases (1); --reserved takes
-those unknown kinds that nothing may be tuned on; --tool PATH names another gst-cloth-gap-1.0
+those unknown kinds that nothing may be tuned on; --noise cameras has places as two cameras make
+them out, with covariances, cameras-untold the same places without these; --tool PATH names another gst-cloth-gap-1.0
 than the shell's, --programs DIR where the benchmark's own simulators are (beside the tool's
 folder: ../tests/gapbench); --jobs N runs at a time (one a core).
 
@@ -52,7 +53,7 @@ def in_parallel(function, arguments, jobs):
         yield from pool.map(lambda given: function(*given), arguments)
 
 
-def generate(realities, folder, chosen, count, seed, reserved=False, jobs=1):
+def generate(realities, folder, chosen, count, seed, reserved=False, jobs=1, noise='even'):
     """Takes and commitments to folder/takes, labels to folder/sealed; all or nothing."""
     if os.path.exists(os.path.join(folder, 'sealed')):
         return
@@ -72,7 +73,7 @@ def generate(realities, folder, chosen, count, seed, reserved=False, jobs=1):
         name = 'case%03d' % number
         path = os.path.join(takes, name)
         try:
-            extra = reality.record(realities, case, path, name, seed)
+            extra = reality.record(realities, case, path, name, seed, noise=noise)
         except families.CannotSimulate as error:
             print('%s left out, it can\'t be recorded: %s' % (name, error))
             shutil.rmtree(path, ignore_errors=True)
@@ -192,6 +193,7 @@ def main():
     parser.add_argument('--set', choices=('few',) + cases.SETS, default='own', dest='chosen')
     parser.add_argument('--cases', type=int, default=1000)
     parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--noise', choices=reality.NOISES, default='even')
     parser.add_argument('--reserved', action='store_true')
     parser.add_argument('--tool', default='gst-cloth-gap-1.0')
     parser.add_argument('--programs')
@@ -208,7 +210,7 @@ def main():
     try:
         if given.step in ('generate', 'all'):
             generate(families.Realities(given.tool, programs), folder, given.chosen, given.cases,
-                     given.seed, given.reserved, given.jobs)
+                     given.seed, given.reserved, given.jobs, given.noise)
         if given.step in ('diagnose', 'all'):
             failed = diagnose(given.tool, os.path.join(folder, 'takes'),
                               os.path.join(folder, 'gaps'), given.jobs)

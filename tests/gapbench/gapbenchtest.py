@@ -14,6 +14,8 @@ import shutil
 import sys
 import tempfile
 
+import numpy
+
 import families
 import gapbench
 import score
@@ -42,6 +44,34 @@ def intervals():
         got = score.binomial_interval(hits, count)
         expect(abs(got[0] - low) < 1e-4 and abs(got[1] - high) < 1e-4,
                '%d of %d: %.4f to %.4f' % (hits, count, *got))
+
+
+def spreads(folder, realities):
+    """Places by two cameras are off by what their covariances say, and the same without these."""
+    takes = {}
+    for noise in ('cameras', 'cameras-untold'):
+        made = os.path.join(folder, noise)
+        with contextlib.redirect_stdout(io.StringIO()):
+            gapbench.generate(realities, made, 'few', 1, 1, noise=noise)
+        takes[noise] = os.path.join(made, 'takes/case001/take')
+    told, untold = takes['cameras'], takes['cameras-untold']
+    y = numpy.load(os.path.join(told, 'positions.npy')).astype(float)
+    expect(numpy.array_equal(y, numpy.load(os.path.join(untold, 'positions.npy')), equal_nan=True)
+           and not os.path.exists(os.path.join(untold, 'covariance.npy')),
+           'the same places with and without covariances')
+    upper = numpy.load(os.path.join(told, 'covariance.npy')).astype(float)
+    seen = ~numpy.isnan(y[..., 0])
+    expect(numpy.array_equal(seen, ~numpy.isnan(upper[..., 0])), 'a covariance for each place seen')
+    # noise is what is left of the third differences in time, which motion hardly has
+    off = y[3:] - 3. * y[2:-1] + 3. * y[1:-2] - y[:-3]
+    whole = ~numpy.isnan(off[..., 0])
+    spread = upper[:, :, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(upper.shape[:2] + (3, 3))
+    spread = spread[3:] + 9. * spread[2:-1] + 9. * spread[1:-2] + spread[:-3]
+    white = numpy.linalg.solve(spread[whole], off[whole][:, :, None])[:, :, 0]
+    square = (white * off[whole]).sum(axis=1).mean() / 3.
+    expect(abs(square - 1.) < 0.1, 'whitened by its covariance the noise is %.3f' % square)
+    across = numpy.sqrt(numpy.linalg.eigvalsh(spread[whole]))
+    expect((across[:, 2] > 3. * across[:, 0]).all(), 'three times as far off in depth as across')
 
 
 def blind(takes, labels):
@@ -162,6 +192,7 @@ def scores(folder, labels):
 with tempfile.TemporaryDirectory(prefix='cloth-gapbenchtest-') as scratch:
     made = os.path.join(scratch, 'run')
     intervals()
+    spreads(scratch, families.Realities(tool, sys.argv[2]))
     gapbench.generate(families.Realities(tool, sys.argv[2]), made, 'few', 1000, 1)
     opened = seal.open_labels(os.path.join(made, 'sealed'), os.path.join(made, 'takes'))
     expect(len(opened) == 6, 'every commitment holds')

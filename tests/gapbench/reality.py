@@ -17,6 +17,11 @@ CLOTH = {'columns': 9, 'rows': 10, 'width_m': 0.22, 'height_m': 0.24}
 BEFORE = 0.5
 USUAL = {'motion': 'sway', 'held': 'corners', 'fps': 50., 'seconds': 1.5, 'noise_m': None,
          'jitter_s': 0., 'dropped': 0., 'origin_m': [0., 0., 0.]}
+# What a place is known by: the same noise everywhere, or two cameras a stride away and 18° apart,
+# the second of which has the right half of the cloth three times less sharp; covariances are
+# written beside, or left out.
+NOISES = ('even', 'cameras', 'cameras-untold')
+CAMERAS = numpy.array([[-0.16, -1., 0.1], [0.16, -1., 0.1]])
 HELD = {'corners': [(0., 0.), (1., 0.)], 'edge': [(0., 0.), (1., 0.)],
         'four': [(0., 0.), (1., 0.), (0., 1.), (1., 1.)],
         'middle': [(0., 0.), (1., 0.), (0.5, 0.)]}
@@ -86,7 +91,7 @@ def choose_setup(case, random):
     if 'columns' in how:
         cloth = {'columns': how['columns'], 'rows': how['rows'], 'width_m': how['width_m'],
                  'height_m': how['width_m'] * how['aspect']}
-    return {'cloth': cloth, 'held': HELD[how['held']], 'edge': how['held'] == 'edge',
+    return {'noise': 'even', 'cloth': cloth, 'held': HELD[how['held']], 'edge': how['held'] == 'edge',
             'bulge_m': 0., 'how': how, 'until_s': {}, 'motion': choose_motion(
                 how['motion'], random)}
 
@@ -134,6 +139,22 @@ def take_of(setup, grid, name, fps):
                      for vertex, end in zip(vertices, until)], 'obstacles': setup.get('obstacles', [])}
 
 
+def spread_of(setup, seen, noise):
+    """Covariances of places that two cameras make out, [time][vertex][3][3]; noise is how far off a
+    sharp one is across its ray, a metre away."""
+    middle = setup['paths'][0].mean(axis=0)
+    column = numpy.arange(seen.shape[1]) % setup['cloth']['columns']
+    known = numpy.zeros(seen.shape + (3,))
+    for camera, place in enumerate(CAMERAS):
+        ray = seen - (middle + place)
+        far = numpy.linalg.norm(ray, axis=2)
+        ray /= far[:, :, None]
+        blur = numpy.where((2 * column >= setup['cloth']['columns']) & (camera == 1), 3., 1.)
+        known += (numpy.eye(3) - ray[:, :, :, None] * ray[:, :, None, :]) / (
+            (noise * blur * far) ** 2)[:, :, None, None]
+    return numpy.linalg.inv(known)
+
+
 def film(folder, name, setup, positions, random, clock=None, change=None):
     """Records what @positions do: noise and what is hidden; the stated noise is what a rig would
     state. Of pictures at t the cloth is that of clock(t); change spoils the points."""
@@ -145,7 +166,13 @@ def film(folder, name, setup, positions, random, clock=None, change=None):
     seen = families.interpolate(positions, BEFORE + (clock(times) if clock else times))
     if change:
         seen = change(seen, times)
-    seen = seen + noise * random.normal(size=(4096,) + seen.shape[1:])[:len(seen)]
+    off, spread = random.normal(size=(4096,) + seen.shape[1:])[:len(seen)], None
+    if setup['noise'] == 'even':
+        seen = seen + noise * off
+    else:
+        spread = spread_of(setup, seen, noise)
+        seen = seen + numpy.einsum('ijkl,ijl->ijk', numpy.linalg.cholesky(spread), off)
+        noise = float(numpy.sqrt(numpy.einsum('ijkk->ij', spread).mean() / 3.))
     row, column = numpy.divmod(numpy.arange(grid[0] * grid[1]), grid[0])
     for _ in range(3):
         # Something passes before the cloth.
@@ -161,7 +188,8 @@ def film(folder, name, setup, positions, random, clock=None, change=None):
     exact = not how['jitter_s'] and not how['dropped']
     families.write_take(folder, dict(take_of(setup, grid, name, how['fps']), noise_sigma_m=noise),
                         seen, families.interpolate(paths, BEFORE + times),
-                        None if exact else times)
+                        None if exact else times,
+                        spread if setup['noise'] == 'cameras' else None)
     return noise
 
 
@@ -401,12 +429,12 @@ def effects_in_take(effects):
     return effects
 
 
-def record(realities, case, folder, name, seed, every=False):
-    """Records a case and what is given beside it (every: all that could be); returns what the
-    label needs beyond the case."""
+def record(realities, case, folder, name, seed, every=False, noise='even'):
+    """Records a case and what is given beside it (every: all that could be), with one of NOISES;
+    returns what the label needs beyond the case."""
     random = numpy.random.default_rng([seed, case['draw']])
     numbers = families.draw_numbers(random)
-    setup = move(choose_setup(case, random), random)
+    setup = move(dict(choose_setup(case, random), noise=noise), random)
     family = case['family']
     quiet = realities.simulate(family, setup, numbers)
     region, clock, change = None, None, None

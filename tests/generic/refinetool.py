@@ -123,7 +123,8 @@ check(abs(float(re.search(r'disagree by ([\d.]+) px', done.stdout).group(1)) / f
       'the cameras agree as with the true rig')
 for camera, column, unit, name in ((1, 0, 1e3, 'mrad'), (3, 2, 100, '%'), (5, 3, 1e3, 'ms')):
     sd = rig[camera]['standard_deviations']
-    sigma = {0: np.linalg.norm(sd['rotation']), 2: sd['K'][0] / rig[camera]['K'][0][0], 3: 5e-4}
+    sigma = {0: np.linalg.norm(sd['rotation']), 2: sd['K'][0] / rig[camera]['K'][0][0],
+             3: sd['offset_s']}
     value = abs(off[camera][column])
     check(value < 3 * sigma[column], 'cam%d: off by %.3f %s, was %.3f, 3σ is %.3f' % (
         camera, unit * value, name, unit * abs(before[camera][column]),

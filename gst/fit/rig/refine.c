@@ -855,7 +855,7 @@ refinement_new (Refine * r, GError ** error)
     for (guint k = 0; k < 2; k++)
       camera->K_sd[k] = sd[FOCAL] * camera->K[k ? 4 : 0];
     to->late_s = theta[CLOCK];
-    to->late_sd = sd[CLOCK];
+    to->late_sd = camera->offset_sd = sd[CLOCK];
     to->n = counts[c];
   }
   return g_steal_pointer (&result);

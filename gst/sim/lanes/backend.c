@@ -235,7 +235,9 @@ group_free (gpointer group)
   g_aligned_free (state->targets.matrix);
   g_aligned_free (state->pulls.list);
   g_aligned_free (state->pulls.stiffness);
+  g_aligned_free (state->pulls.mass);
   g_aligned_free (state->pulls.rows);
+  g_aligned_free (state->pulls.drawn);
   for (guint l = 0; l < CLOTH_N_LANES; l++)
     if (l == 0 || state->paths[l] != state->paths[0])
       g_free (state->paths[l]);
@@ -646,13 +648,17 @@ reserve_pulls (ClothLaneState * state, guint n)
 {
   ClothLanePulls *p = &state->pulls;
 
-  if (!p->rows)
+  if (!p->rows) {
     p->rows = lanes_new (state->n, sizeof *p->rows);
+    p->drawn = lanes_new (state->n, sizeof *p->drawn);
+  }
   if (n <= p->size)
     return;
   g_aligned_free (p->list);
+  g_aligned_free (p->mass);
   g_aligned_free (p->stiffness);
   p->list = lanes_new (n, sizeof *p->list);
+  p->mass = lanes_new (n, sizeof *p->mass);
   p->stiffness = lanes_new (n, sizeof *p->stiffness);
   p->size = n;
 }
@@ -681,6 +687,7 @@ group_set_pulls (gpointer group, const ClothPull * pulls, guint n,
   p->per_square = 1. / (options->sigma * options->sigma);
   p->now = t_now;
   p->per_span = 1. / (t_next - t_now);
+  CLOTH_LANE_NAME (cloth_lane_pulls_weigh) (state);
   bound = CLOTH_LANE_NAME (cloth_lane_pulls_bound) (state, p->rows);
   for (guint l = 0; l < CLOTH_N_LANES; l++) {
     guint of = l < state->n_models ? l : 0;

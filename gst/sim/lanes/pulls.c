@@ -27,16 +27,16 @@ scatter (const ClothLanePull * pull, guint n, const ClothLane force[3],
           force[k] * cloth_lane_set (pull->share[i]) : force[k];
 }
 
-CLOTH_LANE_INLINE ClothLane
-find_mass (const ClothLaneState * state, const ClothLanePull * pull, guint n)
+/* gain x + damping v of a particle. */
+CLOTH_LANE_INLINE void
+find_drawn (const ClothLaneState * state, guint particle, ClothLane drawn[3])
 {
-  const guint32 *p = pull->particle;
+  const ClothLanePulls *pulls = &state->pulls;
 
-  if (n == 1)
-    return state->mass[p[0]];
-  return state->mass[p[0]] * cloth_lane_set (pull->at[0]) +
-      state->mass[p[1]] * cloth_lane_set (pull->at[1]) +
-      state->mass[p[2]] * cloth_lane_set (pull->at[2]);
+  for (guint k = 0; k < 3; k++)
+    drawn[k] = pulls->gain * state->x[particle][k] +
+        pulls->damping * cloth_lane_velocity (state, state->v[particle][k],
+        state->before_v[particle][k]);
 }
 
 /* Of @n numbers that lie on straight lines, which all lanes share. */
@@ -78,25 +78,26 @@ draw (const ClothLaneState * state, guint begin, guint end, guint n,
 
   for (guint i = begin; i < end; i++) {
     const ClothLanePull *pull = &pulls->list[i];
-    ClothLane away[3], along[3], information[6], pushed[3], force[3], scale;
-    ClothLane velocity[3], before[3];
+    ClothLane target[3], velocity[3], at[3], information[6], force[3];
+    ClothLane scale = pulls->mass[i];
 
-    gather (pull, n, (const ClothLane3 *) state->x, along);
-    interpolate (3, pull->target[0], pull->target[1], share, away);
-    for (guint k = 0; k < 3; k++)
-      away[k] -= along[k];
+    interpolate (3, pull->target[0], pull->target[1], share, target);
+    interpolate (3, pull->velocity[0], pull->velocity[1], share, velocity);
     interpolate (6, pull->information[0], pull->information[1], share,
         information);
-    scale = find_mass (state, pull, n);
-    if (law != CLOTH_PULL_LINEAR)
-      scale *= fall_off (pulls, law, information, away);
-    gather (pull, n, (const ClothLane3 *) state->v, along);
-    gather (pull, n, (const ClothLane3 *) state->before_v, before);
-    interpolate (3, pull->velocity[0], pull->velocity[1], share, velocity);
+    if (law != CLOTH_PULL_LINEAR) {
+      gather (pull, n, (const ClothLane3 *) state->x, at);
+      for (guint k = 0; k < 3; k++)
+        at[k] = target[k] - at[k];
+      scale *= fall_off (pulls, law, information, at);
+    }
+    if (n == 3)
+      gather (pull, n, (const ClothLane3 *) pulls->drawn, at);
+    else
+      find_drawn (state, pull->particle[0], at);
     for (guint k = 0; k < 3; k++)
-      pushed[k] = pulls->gain * away[k] + pulls->damping *
-          (velocity[k] - cloth_lane_velocity (state, along[k], before[k]));
-    cloth_lane_symmetric (information, pushed, force);
+      at[k] = pulls->gain * target[k] + pulls->damping * velocity[k] - at[k];
+    cloth_lane_symmetric (information, at, force);
     for (guint k = 0; k < 3; k++)
       force[k] *= scale;
     scatter (pull, n, force, f);
@@ -111,12 +112,31 @@ CLOTH_LANE_NAME (cloth_lane_pulls) (const ClothLaneState * state,
   const ClothLanePulls * pulls = &state->pulls;
   ClothReal share = share_of (pulls, time_s);
 
+  /* once a particle, not once for each triangle about it */
+  for (guint i = 0; pulls->n > pulls->n_single && i < state->n; i++)
+    find_drawn (state, i, pulls->drawn[i]);
   if (pulls->law == CLOTH_PULL_LINEAR) {
     draw (state, 0, pulls->n_single, 1, CLOTH_PULL_LINEAR, share, f);
     draw (state, pulls->n_single, pulls->n, 3, CLOTH_PULL_LINEAR, share, f);
   } else {
     draw (state, 0, pulls->n_single, 1, pulls->law, share, f);
     draw (state, pulls->n_single, pulls->n, 3, pulls->law, share, f);
+  }
+}
+
+/* Finds the mass of each pull's point. */
+void
+CLOTH_LANE_NAME (cloth_lane_pulls_weigh) (ClothLaneState * state)
+{
+  const ClothLanePulls * pulls = &state->pulls;
+
+  for (guint i = 0; i < pulls->n; i++) {
+    const ClothLanePull *pull = &pulls->list[i];
+
+    pulls->mass[i] = cloth_lane_set (0.);
+    for (guint corner = 0; corner < pull->n; corner++)
+      pulls->mass[i] += state->mass[pull->particle[corner]] *
+          cloth_lane_set (pull->at[corner]);
   }
 }
 
@@ -130,7 +150,7 @@ CLOTH_LANE_NAME (cloth_lane_pulls_update) (const ClothLaneState * state,
 
   for (guint i = 0; i < pulls->n; i++) {
     const ClothLanePull *pull = &pulls->list[i];
-    ClothLane p[3], away[3], scale = find_mass (state, pull, pull->n);
+    ClothLane p[3], away[3], scale = pulls->mass[i];
 
     gather (pull, pull->n, (const ClothLane3 *) state->x, p);
     interpolate (3, pull->target[0], pull->target[1], share, away);
@@ -203,8 +223,7 @@ CLOTH_LANE_NAME (cloth_lane_pulls_bound) (const ClothLaneState * state,
   memset (rows, 0, state->n * sizeof *rows);
   for (guint i = 0; i < pulls->n; i++) {
     const ClothLanePull *pull = &pulls->list[i];
-    ClothLane stiff = find_mass (state, pull, pull->n) *
-        cloth_lane_set (pull->strongest * steepest);
+    ClothLane stiff = pulls->mass[i] * cloth_lane_set (pull->strongest * steepest);
 
     for (guint corner = 0; corner < pull->n; corner++)
       rows[pull->particle[corner]] += stiff *

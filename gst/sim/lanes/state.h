@@ -54,8 +54,10 @@ typedef struct
   guint n, size;
   guint n_single;               /* the first ones are at one particle */
   ClothLanePull *list;
+  ClothLane *mass;              /* of the point of each */
   ClothLane (*stiffness)[6];    /* of each in an implicit step */
   ClothLane *rows;              /* of each particle, for the bound */
+  ClothLane3 *drawn;            /* of each particle: gain x + damping v */
   ClothPullLaw law;
   gdouble softening, per_square;        /* 1/σ² */
   gdouble now, per_span;        /* s, 1/s */
@@ -260,6 +262,7 @@ void CLOTH_LANE_NAME (cloth_lane_targets) (const ClothLaneState * state,
     gdouble time_s, ClothLane3 * f);
 void CLOTH_LANE_NAME (cloth_lane_pulls) (const ClothLaneState * state,
     gdouble time_s, ClothLane3 * f);
+void CLOTH_LANE_NAME (cloth_lane_pulls_weigh) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_pulls_bound) (const ClothLaneState *
     state, ClothLane * rows);
 void CLOTH_LANE_NAME (cloth_lane_pulls_update) (const ClothLaneState * state,
