@@ -333,7 +333,7 @@ cloth_sensitivities_run (const ClothSensitivities * sensitivities,
     gains[i] = options->gain;
   options->simulations += n;
   if (options->window_s > 0. ?
-      !cloth_rollout_windows (sensitivities->recording,
+      !cloth_rollout_windows (b.targets,
           (const ClothModel * const *) models, n, options->gain,
           options->window_s, &options->rollout, collect_windows, &b, sound,
           error) :

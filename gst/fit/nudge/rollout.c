@@ -510,7 +510,8 @@ cloth_rollout_free (const ClothRecording * recording,
       && run_through (&run, on_frame, data, sound, error);
 }
 
-/* @recording: what is compared with
+/* @targets: (array length=n_models): what leads each model up to its windows, as
+ *   cloth_rollout_nudged () has it
  * @models: (array length=n_models): the models
  * @n_models: how many
  * @gain: of the observer that leads up to each window, 1/s²
@@ -526,7 +527,7 @@ cloth_rollout_free (const ClothRecording * recording,
  * its start.
  */
 gboolean
-cloth_rollout_windows (const ClothRecording * recording,
+cloth_rollout_windows (const ClothRecording * const *targets,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options,
     ClothRolloutFrame on_frame, gpointer data, gboolean * sound,
@@ -534,19 +535,21 @@ cloth_rollout_windows (const ClothRecording * recording,
 {
   g_auto (Run) run = { 0 };
   /* side by side: those let go, those nudged */
-  g_autofree const ClothRecording **targets = repeat (recording, 2 * n_models);
+  g_autofree const ClothRecording **twice =
+      g_new (const ClothRecording *, 2 * n_models);
   g_autofree const ClothModel **both = g_new (const ClothModel *, 2 * n_models);
   g_autofree gdouble *gains = g_new0 (gdouble, 2 * n_models);
-  g_autofree guint *windows = cloth_rollout_list_windows (recording, window_s);
+  g_autofree guint *windows = cloth_rollout_list_windows (targets[0], window_s);
 
   for (guint m = 0; m < n_models; m++) {
+    twice[m] = twice[n_models + m] = targets[m];
     both[m] = both[n_models + m] = models[m];
     gains[n_models + m] = gain;
     sound[m] = TRUE;
   }
-  if (!run_init (&run, targets, both, gains, 2 * n_models, options, error))
+  if (!run_init (&run, twice, both, gains, 2 * n_models, options, error))
     return FALSE;
-  for (guint frame = 0; frame + 1 < recording->n_frames; frame++) {
+  for (guint frame = 0; frame + 1 < targets[0]->n_frames; frame++) {
     if (frame && windows[frame + 1] != windows[frame]) {
       note_diverged (&run, n_models, sound);
       for (guint m = 0; m < n_models; m++) {

@@ -60,7 +60,7 @@ gboolean cloth_rollout_free (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models,
     const ClothRolloutOptions * options, ClothRolloutFrame on_frame,
     gpointer data, gboolean * sound, GError ** error);
-gboolean cloth_rollout_windows (const ClothRecording * recording,
+gboolean cloth_rollout_windows (const ClothRecording * const *targets,
     const ClothModel * const *models, guint n_models, gdouble gain,
     gdouble window_s, const ClothRolloutOptions * options,
     ClothRolloutFrame on_frame, gpointer data, gboolean * sound, GError ** error);

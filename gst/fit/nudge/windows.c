@@ -144,15 +144,18 @@ cloth_windowed_gaps_new (const ClothRecording * recording,
 {
   ClothWindowedGap **gaps = g_new (ClothWindowedGap *, n_models);
   g_autofree gboolean *sound = g_new (gboolean, n_models);
+  g_autofree const ClothRecording **targets = g_new (const ClothRecording *,
+      n_models);
   Gather g = { recording, gaps, n_models };
 
   for (guint m = 0; m < n_models; m++) {
+    targets[m] = recording;
     gaps[m] = gap_new (recording, window_s);
     gaps[m]->nudged = g_new0 (gfloat, 3 * (gsize) recording->n *
         recording->n_frames);
     gaps[m]->energy = cloth_energy_spectrum_new (recording);
   }
-  if (!cloth_rollout_windows (recording, models, n_models, gain, window_s,
+  if (!cloth_rollout_windows (targets, models, n_models, gain, window_s,
           options, add_frame, &g, sound, error)) {
     cloth_windowed_gaps_free (gaps, n_models);
     return NULL;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "gst/fit/recording/correction.h"
+#include "gst/fit/recording/imitation.h"
 #include "gst/fit/recording/interpolation.h"
 #include "gst/fit/recording/noise.h"
 #include "gst/fit/recording/observations.h"

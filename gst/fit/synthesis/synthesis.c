@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "gst/fit/error.h"
+#include "gst/fit/synthesis/errors.h"
 
 /* A number is at the end of its range when it is this share of it away. */
 #define AT_END 1e-3
@@ -213,9 +214,10 @@ clear_number (gpointer item)
   g_free (((ClothSynthesisNumber *) item)->name);
 }
 
+/* @errors: of the places of numbers, which are logarithms of what is positive by its nature */
 static void
 list_numbers (ClothSynthesis * s, const ClothCandidates * candidates,
-    const ClothModel * before, const gdouble * sigmas)
+    const ClothModel * before, const ClothSynthesisError * errors)
 {
   for (guint i = 0; i < candidates->n_free; i++) {
     const ClothDirection *d = cloth_candidates_direction (candidates, i);
@@ -225,17 +227,29 @@ list_numbers (ClothSynthesis * s, const ClothCandidates * candidates,
 
     cloth_model_get (before, d->name, &number.before, NULL);
     cloth_model_get (s->model, d->name, &number.value, NULL);
-    number.sigma = d->logarithmic ? number.value * sigmas[i] : sigmas[i];
+    number.sigma = errors[i].sigma * (d->logarithmic ? number.value : 1.);
+    number.finer = d->logarithmic ? exp (errors[i].finer) : errors[i].finer;
+    number.finer_sigma = errors[i].finer_sigma *
+        (d->logarithmic ? number.finer : 1.);
     number.at_end = place - d->low < slack || d->high - place < slack;
     g_array_append_val (s->numbers, number);
   }
 }
 
+static void
+estimate_options_init (ClothEstimateOptions * options,
+    const ClothSynthesisOptions * o)
+{
+  cloth_estimate_options_init (options);
+  options->gain = o->gain;
+  options->window_s = o->window_s;
+  options->rollout = o->rollout;
+}
+
 /* One fit of all recordings. Returns the model. */
 static ClothModel *
 fit (const ClothSynthesis * s, ClothCandidates * candidates,
-    const ClothModel * model, const ClothSynthesisOptions * o, gdouble * sigmas,
-    GError ** error)
+    const ClothModel * model, const ClothSynthesisOptions * o, GError ** error)
 {
   const guint m = candidates->n_free;
   g_autoptr (GPtrArray) studies =
@@ -245,10 +259,7 @@ fit (const ClothSynthesis * s, ClothCandidates * candidates,
   g_autofree gdouble *precisions = g_new (gdouble, m);
   ClothEstimateOptions options;
 
-  cloth_estimate_options_init (&options);
-  options.gain = o->gain;
-  options.window_s = o->window_s;
-  options.rollout = o->rollout;
+  estimate_options_init (&options, o);
   for (guint i = 0; i < m; i++) {
     const gdouble prior = cloth_candidates_direction (candidates, i)->prior;
 
@@ -260,26 +271,23 @@ fit (const ClothSynthesis * s, ClothCandidates * candidates,
             &options));
   return cloth_gauss_newton_fit ((ClothSensitivities **) studies->pdata,
       s->n_takes, candidates, model, directions, precisions, m, NULL,
-      CLOTH_FIT_DEFAULT, o->n_passes, &options, sigmas, error);
+      CLOTH_FIT_DEFAULT, o->n_passes, &options, NULL, error);
 }
 
-/* What draws the cloth: first as smoothing has it, then without what smoothing takes off the motion of the
- * model at hand. */
+/* How far off the fitted numbers are. */
 static gboolean
-straighten (ClothRecording * r, const ClothModel * model,
-    const ClothSynthesisOptions * o, GError ** error)
+find_errors (const ClothSynthesis * s, const ClothCandidates * candidates,
+    const ClothModel * found, const ClothSynthesisOptions * o,
+    ClothSynthesisError * errors, GError ** error)
 {
-  g_autofree gdouble *path = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
-  gboolean sound;
+  g_autofree ClothRecording **recordings = g_new (ClothRecording *, s->n_takes);
+  ClothEstimateOptions options;
 
-  cloth_recording_straighten (r, NULL);
-  if (!cloth_rollout_follow (r, model, o->gain, &o->rollout, path, &sound,
-          error))
-    return FALSE;
-  /* one that diverges is told by the fit */
-  if (sound)
-    cloth_recording_straighten (r, path);
-  return TRUE;
+  estimate_options_init (&options, o);
+  for (guint i = 0; i < s->n_takes; i++)
+    recordings[i] = s->takes[i].recording;
+  return cloth_synthesis_find_errors (recordings, s->n_takes, candidates, found,
+      &options, errors, error);
 }
 
 /* Places on lone rays, and paths of clamps that nobody logged, are as the model at hand has them. */
@@ -305,7 +313,8 @@ look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
     if (!take->recording
         || !cloth_recording_refine_paths (take->recording, model, o->gain,
             &o->rollout, error)
-        || !straighten (take->recording, model, o, error))
+        || !cloth_synthesis_straighten (&take->recording, 1, model, o->gain,
+            &o->rollout, error))
       return FALSE;
   }
   return TRUE;
@@ -441,13 +450,13 @@ cloth_synthesis_problem_evaluate (gpointer problem, const gdouble * point,
 
 /* Gaps and the drawn cloth with the model that was found. The problem's recordings go with it. */
 static ClothSynthesis *
-finish (ClothSynthesisProblem * p, ClothModel * found, const gdouble * sigmas,
-    GError ** error)
+finish (ClothSynthesisProblem * p, ClothModel * found,
+    const ClothSynthesisError * errors, GError ** error)
 {
   g_autoptr (ClothSynthesis) s = g_steal_pointer (&p->s);
 
   s->model = found;
-  list_numbers (s, p->candidates, p->model, sigmas);
+  list_numbers (s, p->candidates, p->model, errors);
   for (guint i = 0; i < s->n_takes; i++)
     if (!measure (&s->takes[i], p->model, s->model, &p->options, error)
         || !draw (&s->takes[i], s->model, &p->options, error))
@@ -466,11 +475,12 @@ cloth_synthesis_problem_finish (ClothSynthesisProblem * problem,
     const gdouble * point, GError ** error)
 {
   const guint n = problem->candidates->n_free;
-  g_autofree gdouble *sigmas = g_new (gdouble, n);
+  g_autofree ClothSynthesisError *errors = g_new (ClothSynthesisError, n);
 
   for (guint i = 0; i < n; i++)
-    sigmas[i] = NAN;
-  return finish (problem, move_to (problem, point), sigmas, error);
+    errors[i] = (ClothSynthesisError) {
+    NAN, NAN, NAN};
+  return finish (problem, move_to (problem, point), errors, error);
 }
 
 /* @problem: (nullable) (transfer full): a problem
@@ -501,24 +511,26 @@ cloth_synthesis_fit (const ClothSynthesisInput * inputs, guint n_inputs,
   g_autoptr (ClothSynthesisProblem) p = cloth_synthesis_problem_new (inputs,
       n_inputs, model, options, error);
   g_autoptr (ClothModel) found = NULL;
-  g_autofree gdouble *sigmas = NULL;
+  g_autofree ClothSynthesisError *errors = NULL;
 
   if (!p)
     return NULL;
-  sigmas = g_new0 (gdouble, p->candidates->n_free);
+  errors = g_new (ClothSynthesisError, p->candidates->n_free);
   found = cloth_model_copy (model);
   for (guint turn = 0; turn < MAX (options->turns, 1); turn++) {
     ClothModel *fitted;
 
     if (turn && !look (p->s, inputs, found, options, error))
       return NULL;
-    fitted = fit (p->s, p->candidates, found, options, sigmas, error);
+    fitted = fit (p->s, p->candidates, found, options, error);
     if (!fitted)
       return NULL;
     cloth_model_free (found);
     found = fitted;
   }
-  return finish (p, g_steal_pointer (&found), sigmas, error);
+  if (!find_errors (p->s, p->candidates, found, options, errors, error))
+    return NULL;
+  return finish (p, g_steal_pointer (&found), errors, error);
 }
 
 /* @take: a fitted take

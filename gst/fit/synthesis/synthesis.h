@@ -34,12 +34,16 @@ typedef struct {
 /* @name: of the model's number
  * @before: where it started
  * @value: where it is
- * @sigma: its standard deviation, in its unit; NaN after a search, which finds none
+ * @sigma: its standard deviation, in its unit, as a number of the model's mesh; NaN after a search, which finds
+ *   none
+ * @finer: what it is on a mesh twice as fine; NaN where that is not known
+ * @finer_sigma: standard deviation of that, as a number of the cloth, whatever the mesh
  * @at_end: it came to an end of its range, where the cloth may be beyond
  */
 typedef struct {
   gchar *name;
   gdouble before, value, sigma;
+  gdouble finer, finer_sigma;
   gboolean at_end;
 } ClothSynthesisNumber;
 

@@ -199,11 +199,8 @@ typedef struct
 static void
 made_clear (Made * m)
 {
-  for (guint i = 0; i < m->n; i++) {
-    g_free (m->made[i]->y);
-    g_free (m->made[i]->velocity);
-    g_free (m->made[i]);
-  }
+  for (guint i = 0; i < m->n; i++)
+    cloth_imitation_free (m->made[i]);
   g_free (m->made);
 }
 
@@ -226,20 +223,6 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
 
   cloth_features_add (m->features, m->made[model], frame, positions,
       m->z + model * m->features->size);
-}
-
-/* A share of the recording's noise, and velocities as a recording has them. What was not seen stays hidden.
- * Where the first frame could not be freed of its noise it has it already. */
-static void
-record (ClothRecording * r, gboolean is_smooth, gdouble noise, guint64 seed)
-{
-  ClothRandom random;
-
-  cloth_random_init (&random, seed);
-  for (gsize i = is_smooth ? 0 : r->n; i < (gsize) r->n * r->n_frames; i++)
-    cloth_recording_add_noise (r, i, noise, &random, r->y + 3 * i);
-  cloth_recording_interpolate (r);
-  cloth_recording_differentiate (r);
 }
 
 /* @ensemble: an ensemble
@@ -274,9 +257,7 @@ cloth_ensemble_run (const ClothEnsemble * ensemble,
 
   quiet.failed = NULL;
   for (guint i = 0; i < e->n; i++) {
-    m.made[i] = g_memdup2 (r, sizeof *r);
-    m.made[i]->y = g_new0 (gdouble, all);
-    m.made[i]->velocity = g_new0 (gdouble, all);
+    m.made[i] = cloth_imitation_new (r);
     models[i] = model;
     gains[i] = options->gain;
   }
@@ -286,8 +267,8 @@ cloth_ensemble_run (const ClothEnsemble * ensemble,
     return FALSE;
   for (guint i = 0; i < e->n; i++)
     if (sound[i])
-      record (m.made[i], cloth_recording_find_start (r, m.made[i]->y, NULL),
-          noise, options->rollout.seed + stream * e->n + i + 1);
+      cloth_imitation_spoil (m.made[i], r, noise,
+          options->rollout.seed + stream * e->n + i + 1);
     else
       memcpy (m.made[i]->y, r->y, all * sizeof (gdouble));
   if (!cloth_rollout_nudged ((const ClothRecording * const *) m.made, models,
