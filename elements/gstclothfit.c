@@ -25,8 +25,9 @@
  * filmed cloth does.
  *
  * `clothfit/fitted`, with `fitted`, at the end and before EOS goes on: `numbers` (array of structures with
- * `name` (string), `before`, `value`, `sigma` (double, the standard deviation) and `at-end` (boolean: it
- * came to an end of its range)), and how far the cloth let go in windows was off before and after
+ * `name` (string), `before`, `value`, `sigma` (double, the standard deviation), `finer` and `finer-sigma` (double:
+ * what it is on a mesh twice as fine, and the standard deviation of that as a number of the cloth; NaN: not known)
+ * and `at-end` (boolean: it came to an end of its range)), and how far the cloth let go in windows was off before and after
  * (double, metres): `windows-before`, `windows-after`. The whole stream is fitted then, which takes its
  * time; `gst-cloth-fit-1.0` does the same for takes, and tells more.
  *
@@ -282,6 +283,8 @@ post_fitted (GstClothFit * self, const ClothSynthesis * s)
             "before", G_TYPE_DOUBLE, number->before,
             "value", G_TYPE_DOUBLE, number->value,
             "sigma", G_TYPE_DOUBLE, number->sigma,
+            "finer", G_TYPE_DOUBLE, number->finer,
+            "finer-sigma", G_TYPE_DOUBLE, number->finer_sigma,
             "at-end", G_TYPE_BOOLEAN, number->at_end, NULL));
     gst_value_array_append_and_take_value (&numbers, &value);
   }

@@ -281,6 +281,8 @@ write_numbers (const Arguments * a, const ClothSynthesis * s,
     cloth_json_writer_number (w, "before", n->before);
     cloth_json_writer_number (w, "value", n->value);
     cloth_json_writer_number (w, "sigma", n->sigma);
+    cloth_json_writer_number (w, "finer", n->finer);
+    cloth_json_writer_number (w, "finer_sigma", n->finer_sigma);
     cloth_json_writer_end_object (w);
     cloth_json_writer_set_one_line (w, FALSE);
   }
@@ -342,21 +344,37 @@ write_all (const Arguments * a, const ClothSynthesis * s,
       MIN (shown->len, CLOTH_VIEW_MAX_TAKES), page, error);
 }
 
+/* What isn't known is a dash. */
+static gchar *
+format_number (const gchar * format, gdouble value)
+{
+  gchar text[32];
+
+  if (isnan (value))
+    return g_strdup ("–");
+  return g_strdup (g_ascii_formatd (text, sizeof text, format, value));
+}
+
 static void
 show (const Arguments * a, const ClothSynthesis * s)
 {
-  g_print ("%-24s %12s %12s %12s\n", "number", "before", "fitted", "±");
+  g_print ("%-24s %10s %10s %8s %10s %8s\n", "number", "before", "fitted", "±",
+      "finer", "±");
   for (guint i = 0; i < s->numbers->len; i++) {
     const ClothSynthesisNumber *n =
         &g_array_index (s->numbers, ClothSynthesisNumber, i);
 
-    g_autofree gchar *sigma = isnan (n->sigma) ? g_strdup ("–") :
-        g_strdup_printf ("%.2g", n->sigma);
+    g_autofree gchar *sigma = format_number ("%.2g", n->sigma);
+    g_autofree gchar *finer = format_number ("%.4g", n->finer);
+    g_autofree gchar *finer_sigma = format_number ("%.2g", n->finer_sigma);
 
-    g_print ("%-24s %12.4g %12.4g %12s%s\n", n->name, n->before, n->value,
-        sigma, n->at_end ? "  at the end of its range, which may be too "
-        "narrow" : "");
+    g_print ("%-24s %10.4g %10.4g %8s %10s %8s%s\n", n->name, n->before,
+        n->value, sigma, finer, finer_sigma,
+        n->at_end ? "  at the end of its range, which may be too " "narrow" :
+        "");
   }
+  g_print ("finer: what they are on a mesh twice as fine, and how far the "
+      "cloth's own may be from that\n");
   g_print ("\n%-24s %30s %30s\n%-24s %10s%10s%10s %10s%10s%10s\n", "gap, mm",
       "before", "fitted", "", "drawn", "windows", "free", "drawn", "windows",
       "free");

@@ -1,7 +1,8 @@
 /* How true fitted numbers are: sheets of drawn numbers, on a mesh twice as fine or as it is, with half the step,
  * filmed by three cameras that each miss a part, are fitted from rays alone.
  *
- *   bench-fit [CASES [FINER]]     12 cases, and reality's mesh twice as fine; 1: the model's own
+ *   bench-fit [CASES [FINER [FIRST]]]     12 cases, and reality's mesh twice as fine; 1: the model's own;
+ *                                         the first case's number, 1
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
@@ -62,6 +63,7 @@ main (int argc, char **argv)
 {
   const guint64 n_cases = argc > 1 ? strtoull (argv[1], NULL, 10) : 12;
   const gdouble finer[1] = { argc > 2 ? atof (argv[2]) : 2. };
+  const guint64 first = argc > 3 ? strtoull (argv[3], NULL, 10) : 1;
   const gdouble shorter[1] = { 0.5 };
   /* as the model's mesh has the numbers, and as one twice as fine */
   g_autofree gdouble *errors[2] = { g_new (gdouble, n_cases * N_NUMBERS),
@@ -70,7 +72,7 @@ main (int argc, char **argv)
   guint held[2][N_NUMBERS] = { {0} }, all[2] = { 0 };
   gdouble before = 0., after = 0.;
 
-  for (seed = 1; seed <= n_cases; seed++) {
+  for (seed = first; seed < first + n_cases; seed++) {
     const TestGapSheet sheet = { COLUMNS, ROWS, N_FRAMES, 0.3, 0.34, FPS };
     const TestGapFilming filming = { 3, 0.3, hide_some };
     g_autofree gchar *parent = g_dir_make_tmp ("cloth-fit-XXXXXX", NULL);
@@ -122,8 +124,8 @@ main (int argc, char **argv)
         if (strcmp (numbers[k].name, n->name))
           continue;
         cloth_model_get (reality, n->name, &value, NULL);
-        errors[0][k * n_cases + seed - 1] = fabs (log (n->value / value));
-        errors[1][k * n_cases + seed - 1] = fabs (log (n->finer / value));
+        errors[0][k * n_cases + seed - first] = fabs (log (n->value / value));
+        errors[1][k * n_cases + seed - first] = fabs (log (n->finer / value));
         held[0][k] += fabs (log (n->value / value)) <
             1.96 * n->sigma / n->value;
         held[1][k] += fabs (log (n->finer / value)) <

@@ -485,6 +485,57 @@ cloth_rollout_follow (const ClothRecording * recording,
       keep_path, &keep, sound, error);
 }
 
+/* @recording: a recording
+ * @lead_s: how long a model is drawn to it, s
+ *
+ * Returns: so many frames
+ */
+guint
+cloth_rollout_count_led (const ClothRecording * recording, gdouble lead_s)
+{
+  guint frame = 0;
+
+  while (frame < recording->n_frames
+      && recording->times[frame] < recording->times[0] + lead_s)
+    frame++;
+  return frame;
+}
+
+/* @recording: what draws the models at first
+ * @models: (array length=n_models): the models
+ * @gains: (array length=n_models): of each model's observer, 1/s²
+ * @n_models: how many, at least 1
+ * @lead_s: how long it draws, s
+ * @options: how to simulate
+ * @on_frame: called for each model in each frame
+ * @data: for @on_frame
+ * @sound: (out) (array length=n_models): which models did not diverge
+ * @error: #ClothSimError, or #ClothFitError when it was stopped
+ *
+ * As cloth_rollout_nudged (), but then nothing draws the models. Noise of the first frame would shake the cloth
+ * as nothing real does: the observer leads them past it.
+ */
+gboolean
+cloth_rollout_led (const ClothRecording * recording,
+    const ClothModel * const *models, const gdouble * gains, guint n_models,
+    gdouble lead_s, const ClothRolloutOptions * options,
+    ClothRolloutFrame on_frame, gpointer data, gboolean * sound,
+    GError ** error)
+{
+  const gsize begin = (gsize) cloth_rollout_count_led (recording, lead_s) *
+      recording->n;
+  /* nobody sees the cloth any more */
+  g_autofree gdouble *seen =
+      g_new0 (gdouble, (gsize) recording->n * recording->n_frames);
+  ClothRecording led = *recording;
+  g_autofree const ClothRecording **targets = repeat (&led, n_models);
+
+  memcpy (seen, recording->seen, begin * sizeof *seen);
+  led.seen = seen;
+  return cloth_rollout_nudged (targets, models, gains, n_models, options,
+      on_frame, data, sound, error);
+}
+
 /* @recording: where it starts: its first positions and velocities, its scene and times
  * @models: (array length=n_models): the models
  * @n_models: how many, at least 1

@@ -56,6 +56,12 @@ gboolean cloth_rollout_follow (const ClothRecording * recording,
     const ClothModel * model, gdouble gain,
     const ClothRolloutOptions * options, gdouble * path, gboolean * sound,
     GError ** error);
+gboolean cloth_rollout_led (const ClothRecording * recording,
+    const ClothModel * const *models, const gdouble * gains, guint n_models,
+    gdouble lead_s, const ClothRolloutOptions * options,
+    ClothRolloutFrame on_frame, gpointer data, gboolean * sound, GError ** error);
+guint cloth_rollout_count_led (const ClothRecording * recording,
+    gdouble lead_s);
 gboolean cloth_rollout_free (const ClothRecording * recording,
     const ClothModel * const *models, guint n_models,
     const ClothRolloutOptions * options, ClothRolloutFrame on_frame,

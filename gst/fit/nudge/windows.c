@@ -174,8 +174,7 @@ cloth_windowed_gaps_new (const ClothRecording * recording,
  * @options: how to simulate
  * @error: #ClothSimError
  *
- * Lets the models run freely to the end. Noise at the start would shake the cloth as nothing real
- * does: the observer leads them past it.
+ * Lets the models run freely to the end.
  *
  * Returns: (transfer full) (nullable) (array length=n_models): each model's distances
  */
@@ -186,29 +185,17 @@ cloth_windowed_gaps_new_free (const ClothRecording * recording,
     GError ** error)
 {
   ClothWindowedGap **gaps = g_new (ClothWindowedGap *, n_models);
-  const gsize all = (gsize) recording->n * recording->n_frames;
+  const gsize begin = (gsize) cloth_rollout_count_led (recording, lead_s) *
+      recording->n;
   g_autofree gboolean *sound = g_new (gboolean, n_models);
   g_autofree gdouble *gains = g_new (gdouble, n_models);
-  g_autofree gdouble *seen = g_memdup2 (recording->seen, all * sizeof *seen);
-  g_autofree const ClothRecording **targets = g_new (const ClothRecording *,
-      n_models);
-  ClothRecording led = *recording;
   Gather g = { recording, gaps, n_models };
-  gsize begin = 0;
 
-  while (begin < all && recording->times[begin / recording->n] <
-      recording->times[0] + lead_s)
-    begin += recording->n;
-  /* from then on nothing draws the models */
-  for (gsize i = begin; i < all; i++)
-    seen[i] = 0.;
-  led.seen = seen;
   for (guint m = 0; m < n_models; m++) {
-    gaps[m] = gap_new (recording, window_s);
     gains[m] = gain;
-    targets[m] = &led;
+    gaps[m] = gap_new (recording, window_s);
   }
-  if (!cloth_rollout_nudged (targets, models, gains, n_models, options,
+  if (!cloth_rollout_led (recording, models, gains, n_models, lead_s, options,
           add_frame, &g, sound, error)) {
     cloth_windowed_gaps_free (gaps, n_models);
     return NULL;

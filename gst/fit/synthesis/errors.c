@@ -1,22 +1,23 @@
 /* How far off fitted numbers are: the fit is made again of recordings whose numbers are known.
  *
- * Model: the fitted cloth is simulated freely from where the recording began. With the recording's noise and
- *   gaps that is an imitation of it. What spoils the fit of the recording spoils that of an imitation likewise:
+ * Model: the fitted cloth is simulated, freely once it has been drawn past the noise of the first frame. With the
+ *   recording's noise and gaps that is an imitation of it. What spoils the fit of the recording spoils that of an imitation likewise:
  *   noise, what was hidden, smoothing, and that features of one motion hang together. So the error of the
  *   one is drawn from what the errors of the others are (parametric bootstrap).
  *   Imitations by the cloth on a mesh twice as fine show what the mesh does to the numbers. Those numbers of the
  *   finer mesh count whose imitations fit as those of the fitted numbers do (indirect inference).
- * Assumption: one step and a few more of the same derivatives lead to where a fit of an imitation ends.
+ * Assumption: a few steps by the same derivatives lead to where a fit of an imitation ends.
  * Formula: with B, W and Λ of the fit, A = BᵀWB/φ + Λ and z (δ) an imitation's residual at θ + δ,
- *     δ ← δ − A⁻¹ (BᵀW z (δ)/φ + Λδ)                                      (chord method).
+ *     δ ← δ − A⁻¹ (BᵀW z (δ)/φ + Λδ)                                      (chord method),
+ *   back most of the way where that made zᵀWz/φ + δᵀΛδ larger.
  *   With the ends e_k of K imitations σ² = K/(K − 2) · Σ e_k²/K: the variance of Student's distribution of a
- *   further one. On the finer mesh θ′ ← θ′ − mean (e′_k − e_k), by the same noise. What a further halving of
- *   its edges, and all after it, would change is taken to be half of what this one did:
- *     σ′² = σ² + (θ′ − θ)²/4,
- *   which is Roache's index of convergence, 95% within 3/(2² − 1) |θ′ − θ|, of a method of second order.
+ *   further one. On the finer mesh θ′ ← θ′ − mean (e′_k − e_k), by the same noise. What all further
+ *   halvings of its edges would change is, where errors are of first order in them, as much again, ½ + ¼ + …,
+ *   and so far off it may be:
+ *     σ′² = σ² + (θ′ − θ)².
  * Reference: Efron and Tibshirani, An Introduction to the Bootstrap, 1993, section 6.5; Gouriéroux, Monfort
- *   and Renault, Indirect inference, 1993; Roache, Perspective: a method for uniform reporting of grid
- *   refinement studies, 1994; Ortega and Rheinboldt, 1970, section 7.1 (chord method).
+ *   and Renault, Indirect inference, 1993; Roache, Quantification of uncertainty in computational fluid
+ *   dynamics, 1997 (refinement of grids); Ortega and Rheinboldt, 1970, section 7.1 (chord method).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/synthesis/errors.h"
@@ -30,12 +31,16 @@
 
 /* Imitations: as many as, let go beside drawn, fill a group of lanes. */
 #define N_IMITATIONS 8
-/* Steps of each. */
-#define N_STEPS 3
+/* How long the cloth is drawn first, in times that it remembers. */
+#define LEAD 2.
+/* Places that the fit of each tries. */
+#define N_TRIED 4
 /* How often the numbers of the finer mesh are looked for. */
-#define N_SEARCHES 3
+#define N_SEARCHES 4
 /* No step is longer than this many priors. */
 #define LONGEST_STEP 1.5
+/* A step that made things worse is cut to this share. */
+#define CUT 0.4
 /* Of the mesh's edges. */
 static const gdouble halved = 2.;
 
@@ -197,29 +202,39 @@ cloth_synthesis_straighten (ClothRecording ** recordings, guint n,
   return TRUE;
 }
 
-/* Makes imitations of recording @t by @model. FALSE without an error: it diverges. */
+/* Makes imitations of recording @t by @model, each by a run of its own, as folds fall one way or the other. FALSE
+ * without an error: it diverges. */
 static gboolean
 imitate (const Fit * fit, guint t, const ClothModel * model,
     ClothRecording ** made, GError ** error)
 {
   const ClothRecording *r = fit->recordings[t];
-  const gsize row = 3 * (gsize) r->n;
+  const gdouble gain = fit->options->gain;
   ClothRolloutOptions quiet = fit->options->rollout;
-  Keep k = { &made[0]->y, row };
-  gboolean sound;
+  const ClothModel *models[N_IMITATIONS];
+  gdouble gains[N_IMITATIONS], *paths[N_IMITATIONS];
+  Keep k = { paths, 3 * (gsize) r->n };
+  gboolean sound[N_IMITATIONS];
 
   quiet.failed = NULL;
-  fit->options->simulations += 1 + N_IMITATIONS;
-  if (!cloth_rollout_free (r, &model, 1, &quiet, keep, &k, &sound, error)
-      || !sound)
+  fit->options->simulations += 2 * N_IMITATIONS;
+  for (guint i = 0; i < N_IMITATIONS; i++) {
+    models[i] = model;
+    gains[i] = gain * exp2 ((i + 0.5) / N_IMITATIONS - 0.5);
+    paths[i] = made[i]->y;
+  }
+  if (!cloth_rollout_led (r, models, gains, N_IMITATIONS,
+          LEAD / (CLOTH_ROLLOUT_ZETA * sqrt (gain)), &quiet, keep, &k, sound,
+          error))
     return FALSE;
-  for (guint i = 1; i < N_IMITATIONS; i++)
-    memcpy (made[i]->y, made[0]->y, row * r->n_frames * sizeof (gdouble));
-  for (guint i = 0; i < N_IMITATIONS; i++)
+  for (guint i = 0; i < N_IMITATIONS; i++) {
+    if (!sound[i])
+      return FALSE;
     cloth_imitation_spoil (made[i], r, 1., fit->options->rollout.seed +
         t * N_IMITATIONS + i + 1);
-  return cloth_synthesis_straighten (made, N_IMITATIONS, fit->model,
-      fit->options->gain, &quiet, error);
+  }
+  return cloth_synthesis_straighten (made, N_IMITATIONS, fit->model, gain,
+      &quiet, error);
 }
 
 /* Features of the residuals of models let go in windows, each of its own imitation. */
@@ -240,14 +255,44 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
         r->z + model * r->features->size);
 }
 
-/* Adds BᵀWz/φ of the imitations of recording @t with these models to the scores, [imitation][m]. */
+/* Where the fit of an imitation is. */
+typedef struct
+{
+  gdouble *delta;               /* from the fitted numbers: the best place so far */
+  gdouble *step;                /* from there to the next one */
+  gdouble *score;               /* BᵀWz/φ + Λδ there */
+  gdouble cost;                 /* zᵀWz/φ + δᵀΛδ there */
+  gdouble best;                 /* at the best place */
+  gboolean sound;
+} Search;
+
+static void
+searches_clear (Search * searches)
+{
+  for (guint k = 0; k < N_IMITATIONS; k++) {
+    g_free (searches[k].delta);
+    g_free (searches[k].step);
+    g_free (searches[k].score);
+  }
+}
+
+static void
+searches_init (Search * searches, guint m)
+{
+  for (guint k = 0; k < N_IMITATIONS; k++)
+    searches[k] = (Search) {
+    g_new0 (gdouble, m), g_new0 (gdouble, m), g_new0 (gdouble, m),.sound =
+        TRUE};
+}
+
+/* Adds what the imitations of recording @t, followed by these models, have in the scores and costs. */
 static gboolean
 add_scores (const Fit * fit, guint t, ClothRecording ** made,
-    const ClothModel * const *models, gdouble * scores, gboolean * sound,
-    GError ** error)
+    const ClothModel * const *models, Search * searches, GError ** error)
 {
   const ClothSensitivities *s = fit->studies[t];
   const gsize size = s->features->size;
+  const gdouble phi = fit->options->overdispersion;
   g_autofree gdouble *z = g_new0 (gdouble, N_IMITATIONS * size);
   Residuals residuals = { s->features, made, z };
   gboolean followed[N_IMITATIONS];
@@ -260,38 +305,41 @@ add_scores (const Fit * fit, guint t, ClothRecording ** made,
           collect, &residuals, followed, error))
     return FALSE;
   for (guint k = 0; k < N_IMITATIONS; k++) {
-    sound[k] = sound[k] && followed[k];
-    for (guint i = 0; i < fit->m; i++) {
-      const gdouble *column = s->columns + i * size;
-      gdouble sum = 0.;
+    const gdouble *own = z + k * size;
 
+    for (gsize f = 0; f < size; f++)
+      searches[k].cost += fit->weights[t][f] * own[f] * own[f] / phi;
+    for (guint i = 0; i < fit->m; i++)
       for (gsize f = 0; f < size; f++)
-        sum += column[f] * fit->weights[t][f] * z[k * size + f];
-      scores[k * fit->m + i] += sum / fit->options->overdispersion;
-    }
+        searches[k].score[i] += s->columns[i * size + f] *
+            fit->weights[t][f] * own[f] / phi;
+    if (!followed[k])
+      searches[k].cost = INFINITY;
   }
   return TRUE;
 }
 
-/* One step of the chord method of each imitation. */
+/* From a place that was tried: on from there if it is better than the best one, else back, most of the way. */
 static void
-step (const Fit * fit, gdouble * scores, gdouble * deltas)
+go_on (const Fit * fit, Search * s)
 {
-  for (guint k = 0; k < N_IMITATIONS; k++) {
-    gdouble *score = scores + k * fit->m, *delta = deltas + k * fit->m;
-
+  if (!(s->cost < s->best)) {
     for (guint i = 0; i < fit->m; i++)
-      score[i] += fit->precisions[i] * delta[i];
-    cloth_posterior_apply (&fit->posterior, score);
-    for (guint i = 0; i < fit->m; i++) {
-      const ClothDirection *d = cloth_candidates_direction (fit->candidates, i);
-      const gdouble place = cloth_candidates_place (fit->candidates, fit->model,
-          i);
+      s->step[i] *= CUT;
+    return;
+  }
+  s->best = s->cost;
+  cloth_posterior_apply (&fit->posterior, s->score);
+  for (guint i = 0; i < fit->m; i++) {
+    const ClothDirection *d = cloth_candidates_direction (fit->candidates, i);
+    const gdouble place = cloth_candidates_place (fit->candidates, fit->model,
+        i);
+    const gdouble longest = LONGEST_STEP * d->prior;
 
-      delta[i] -= CLAMP (score[i], -LONGEST_STEP * d->prior,
-          LONGEST_STEP * d->prior);
-      delta[i] = CLAMP (place + delta[i], d->fit_low, d->fit_high) - place;
-    }
+    s->delta[i] += s->step[i];
+    s->step[i] = CLAMP (-s->score[i], -longest, longest);
+    s->step[i] = CLAMP (place + s->delta[i] + s->step[i], d->fit_low,
+        d->fit_high) - place - s->delta[i];
   }
 }
 
@@ -307,11 +355,38 @@ move (const Fit * fit, const gdouble * delta)
       fit->m);
 }
 
-/* Fits the imitations by a model: where the fits end, from the fitted numbers, [imitation][m], which they begin
- * with. Those that diverge on the way are not @sound. FALSE without an error: the model does. */
+/* Tries the next place of each fit. */
 static gboolean
-fit_imitations (const Fit * fit, const ClothModel * model, gdouble * deltas,
-    gboolean * sound, GError ** error)
+try_places (const Fit * fit, const Imitations * all, Search * searches,
+    GError ** error)
+{
+  g_autoptr (GPtrArray) models =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_model_free);
+
+  for (guint k = 0; k < N_IMITATIONS; k++) {
+    Search *s = &searches[k];
+    g_autofree gdouble *delta = g_new (gdouble, fit->m);
+
+    s->cost = 0.;
+    for (guint i = 0; i < fit->m; i++) {
+      delta[i] = s->delta[i] + s->step[i];
+      s->score[i] = fit->precisions[i] * delta[i];
+      s->cost += s->score[i] * delta[i];
+    }
+    g_ptr_array_add (models, move (fit, delta));
+  }
+  for (guint t = 0; t < fit->n; t++)
+    if (!add_scores (fit, t, all->made + t * N_IMITATIONS,
+            (const ClothModel * const *) models->pdata, searches, error))
+      return FALSE;
+  return TRUE;
+}
+
+/* Fits imitations by a model, from the best places of other fits on. Those that can't be followed are not sound. FALSE
+ * without an error: the model diverges. */
+static gboolean
+fit_imitations (const Fit * fit, const ClothModel * model, Search * searches,
+    GError ** error)
 {
   g_auto (Imitations) all = { g_new0 (ClothRecording *,
         fit->n * N_IMITATIONS), fit->n * N_IMITATIONS
@@ -322,41 +397,35 @@ fit_imitations (const Fit * fit, const ClothModel * model, gdouble * deltas,
   for (guint t = 0; t < fit->n; t++)
     if (!imitate (fit, t, model, all.made + t * N_IMITATIONS, error))
       return FALSE;
-  for (guint k = 0; k < N_IMITATIONS; k++)
-    sound[k] = TRUE;
-  for (guint pass = 0; pass < N_STEPS; pass++) {
-    g_autofree gdouble *scores = g_new0 (gdouble, N_IMITATIONS * fit->m);
-    ClothModel *models[N_IMITATIONS];
-    gboolean done = TRUE;
-
-    for (guint k = 0; k < N_IMITATIONS; k++)
-      models[k] = move (fit, deltas + k * fit->m);
-    for (guint t = 0; t < fit->n && done; t++)
-      done = add_scores (fit, t, all.made + t * N_IMITATIONS,
-          (const ClothModel * const *) models, scores, sound, error);
-    for (guint k = 0; k < N_IMITATIONS; k++)
-      cloth_model_free (models[k]);
-    if (!done)
-      return FALSE;
-    step (fit, scores, deltas);
+  for (guint k = 0; k < N_IMITATIONS; k++) {
+    searches[k].best = INFINITY;
+    memset (searches[k].step, 0, fit->m * sizeof (gdouble));
   }
+  for (guint pass = 0; pass < N_TRIED; pass++) {
+    if (!try_places (fit, &all, searches, error))
+      return FALSE;
+    for (guint k = 0; k < N_IMITATIONS; k++)
+      go_on (fit, &searches[k]);
+  }
+  for (guint k = 0; k < N_IMITATIONS; k++)
+    searches[k].sound = isfinite (searches[k].best);
   return TRUE;
 }
 
 /* Standard deviations by the ends of fits. */
 static void
-find_sigmas (const Fit * fit, const gdouble * ends, const gboolean * sound,
+find_sigmas (const Fit * fit, const Search * searches,
     ClothSynthesisError * errors)
 {
   guint n = 0;
 
   for (guint k = 0; k < N_IMITATIONS; k++)
-    n += sound[k];
+    n += searches[k].sound;
   for (guint i = 0; i < fit->m; i++) {
     gdouble sum = 0.;
 
     for (guint k = 0; k < N_IMITATIONS; k++)
-      sum += sound[k] ? pow (ends[k * fit->m + i], 2.) : 0.;
+      sum += searches[k].sound ? pow (searches[k].delta[i], 2.) : 0.;
     errors[i] = (ClothSynthesisError) {
     n > 2 ? sqrt (sum / (n - 2)) : NAN, NAN, NAN};
   }
@@ -365,13 +434,13 @@ find_sigmas (const Fit * fit, const gdouble * ends, const gboolean * sound,
 /* Moves the numbers of the finer mesh to where its imitations fit as those of the fitted ones. FALSE: there is none
  * of both kinds to hold against each other. */
 static gboolean
-move_finer (const Fit * fit, const gdouble * ends, const gboolean * sound,
-    const gdouble * ends_finer, const gboolean * sound_finer, gdouble * moved)
+move_finer (const Fit * fit, const Search * searches, const Search * finer,
+    gdouble * moved)
 {
   guint n = 0;
 
   for (guint k = 0; k < N_IMITATIONS; k++)
-    n += sound[k] && sound_finer[k];
+    n += searches[k].sound && finer[k].sound;
   for (guint i = 0; i < fit->m && n; i++) {
     const ClothDirection *d = cloth_candidates_direction (fit->candidates, i);
     const gdouble place = cloth_candidates_place (fit->candidates, fit->model,
@@ -379,8 +448,8 @@ move_finer (const Fit * fit, const gdouble * ends, const gboolean * sound,
     gdouble sum = 0.;
 
     for (guint k = 0; k < N_IMITATIONS; k++)
-      sum += sound[k] && sound_finer[k] ? ends_finer[k * fit->m + i] -
-          ends[k * fit->m + i] : 0.;
+      sum += searches[k].sound && finer[k].sound ? finer[k].delta[i] -
+          searches[k].delta[i] : 0.;
     moved[i] -= sum / n;
     moved[i] = CLAMP (place + moved[i], d->fit_low, d->fit_high) - place;
   }
@@ -389,22 +458,23 @@ move_finer (const Fit * fit, const gdouble * ends, const gboolean * sound,
 
 /* What the numbers are on a mesh twice as fine. FALSE without an error: that can't be told. */
 static gboolean
-find_finer (const Fit * fit, const gdouble * ends, const gboolean * sound,
-    gdouble * moved, GError ** error)
+find_finer (const Fit * fit, const Search * searches, gdouble * moved,
+    GError ** error)
 {
-  g_autofree gdouble *ends_finer = g_new0 (gdouble, N_IMITATIONS * fit->m);
-  gboolean sound_finer[N_IMITATIONS];
+  Search finer[N_IMITATIONS];
+  gboolean done = TRUE;
 
-  for (guint search = 0; search < N_SEARCHES; search++) {
-    g_autoptr (ClothModel) finer = move (fit, moved);
+  searches_init (finer, fit->m);
+  for (guint search = 0; search < N_SEARCHES && done; search++) {
+    g_autoptr (ClothModel) model = move (fit, moved);
 
-    cloth_model_set_effect (finer, cloth_effect_find ("mesh_resolution"),
+    cloth_model_set_effect (model, cloth_effect_find ("mesh_resolution"),
         &halved);
-    if (!fit_imitations (fit, finer, ends_finer, sound_finer, error)
-        || !move_finer (fit, ends, sound, ends_finer, sound_finer, moved))
-      return FALSE;
+    done = fit_imitations (fit, model, finer, error)
+        && move_finer (fit, searches, finer, moved);
   }
-  return TRUE;
+  searches_clear (finer);
+  return done;
 }
 
 static gboolean
@@ -437,35 +507,32 @@ cloth_synthesis_find_errors (ClothRecording ** recordings, guint n,
 {
   const guint m = candidates->n_free;
   g_auto (Fit) fit = { recordings, n, candidates, m, model, options };
-  g_autofree gdouble *ends = g_new0 (gdouble, N_IMITATIONS * m);
   g_autofree gdouble *moved = g_new0 (gdouble, m);
   g_autoptr (GError) failed = NULL;
-  gboolean sound[N_IMITATIONS] = { FALSE };
+  Search searches[N_IMITATIONS];
 
-  if (!fit_init (&fit, error))
-    return FALSE;
-  find_sigmas (&fit, ends, sound, errors);
-  if (!cloth_posterior_solve (&fit.posterior))
+  for (guint i = 0; i < m; i++)
+    errors[i] = (ClothSynthesisError) {
+    NAN, NAN, NAN};
+  searches_init (searches, m);
+  if (fit_init (&fit, &failed) && cloth_posterior_solve (&fit.posterior)
+      && fit_imitations (&fit, model, searches, &failed)) {
+    find_sigmas (&fit, searches, errors);
+    if (!has_effect (model, "mesh_resolution")
+        && find_finer (&fit, searches, moved, &failed))
+      for (guint i = 0; i < m; i++) {
+        errors[i].finer = cloth_candidates_place (candidates, model, i) +
+            moved[i];
+        errors[i].finer_sigma =
+            hypot (errors[i].sigma * sqrt (1. + 2. / N_IMITATIONS), moved[i]);
+      }
+    /* a mesh that can't be made so fine */
+    if (g_error_matches (failed, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL))
+      g_clear_error (&failed);
+  }
+  searches_clear (searches);
+  if (!failed)
     return TRUE;
-  if (!fit_imitations (&fit, model, ends, sound, &failed)) {
-    if (!failed)
-      return TRUE;
-    g_propagate_error (error, g_steal_pointer (&failed));
-    return FALSE;
-  }
-  find_sigmas (&fit, ends, sound, errors);
-  if (has_effect (model, "mesh_resolution")
-      || !find_finer (&fit, ends, sound, moved, &failed)) {
-    /* a mesh that can't be made so fine, or diverges then */
-    if (!failed || g_error_matches (failed, CLOTH_SIM_ERROR,
-            CLOTH_SIM_ERROR_MODEL))
-      return TRUE;
-    g_propagate_error (error, g_steal_pointer (&failed));
-    return FALSE;
-  }
-  for (guint i = 0; i < m; i++) {
-    errors[i].finer = cloth_candidates_place (candidates, model, i) + moved[i];
-    errors[i].finer_sigma = hypot (errors[i].sigma, moved[i] / 2.);
-  }
-  return TRUE;
+  g_propagate_error (error, g_steal_pointer (&failed));
+  return FALSE;
 }

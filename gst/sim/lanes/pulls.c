@@ -125,10 +125,9 @@ CLOTH_LANE_NAME (cloth_lane_pulls) (const ClothLaneState * state,
 }
 
 /* Finds the mass of each pull's point. */
-void
-CLOTH_LANE_NAME (cloth_lane_pulls_weigh) (ClothLaneState * state)
+void CLOTH_LANE_NAME (cloth_lane_pulls_weigh) (ClothLaneState * state)
 {
-  const ClothLanePulls * pulls = &state->pulls;
+  const ClothLanePulls *pulls = &state->pulls;
 
   for (guint i = 0; i < pulls->n; i++) {
     const ClothLanePull *pull = &pulls->list[i];
@@ -223,7 +222,8 @@ CLOTH_LANE_NAME (cloth_lane_pulls_bound) (const ClothLaneState * state,
   memset (rows, 0, state->n * sizeof *rows);
   for (guint i = 0; i < pulls->n; i++) {
     const ClothLanePull *pull = &pulls->list[i];
-    ClothLane stiff = pulls->mass[i] * cloth_lane_set (pull->strongest * steepest);
+    ClothLane stiff =
+        pulls->mass[i] * cloth_lane_set (pull->strongest * steepest);
 
     for (guint corner = 0; corner < pull->n; corner++)
       rows[pull->particle[corner]] += stiff *
