@@ -19,7 +19,7 @@ import numpy
 
 tool, root = (os.path.abspath(path) for path in sys.argv[1:])
 springs = os.path.join(root, 'tests/simulators/springs.py')
-N, FRAMES, NOISE = 9, 100, 3e-4
+N, FRAMES, NOISE = 9, 60, 3e-4
 faults = []
 
 MODEL = {'version': 1, 'areal_density': 0.15, 'stretch': {'warp': 15, 'weft': 15}, 'shear': 5,

@@ -36,7 +36,7 @@
 /* Places that the fit of each tries. */
 #define N_TRIED 4
 /* How often the numbers of the finer mesh are looked for. */
-#define N_SEARCHES 4
+#define N_SEARCHES 3
 /* No step is longer than this many priors. */
 #define LONGEST_STEP 1.5
 /* A step that made things worse is cut to this share. */
