@@ -66,9 +66,8 @@ main (int argc, char **argv)
   const guint64 first = argc > 3 ? strtoull (argv[3], NULL, 10) : 1;
   const gdouble shorter[1] = { 0.5 };
   /* as the model's mesh has the numbers, and as one twice as fine */
-  g_autofree gdouble *errors[2] = { g_new (gdouble, n_cases * N_NUMBERS),
-    g_new (gdouble, n_cases * N_NUMBERS)
-  };
+  g_autofree gdouble *memory = g_new (gdouble, 2 * n_cases * N_NUMBERS);
+  gdouble *errors[2] = { memory, memory + n_cases * N_NUMBERS };
   guint held[2][N_NUMBERS] = { {0} }, all[2] = { 0 };
   gdouble before = 0., after = 0.;
 

@@ -13,6 +13,7 @@
 
 #define N_CASES 3
 #define N_NUMBERS 7
+#define NOISE_M 2e-4
 
 static const gdouble halved = 2.;
 static const gdouble usual[N_NUMBERS] =
@@ -75,9 +76,10 @@ free_model (void)
 
 static ClothSynthesis *
 fit (const ClothModel * reality, const ClothModel * model, guint seed,
-    guint n_frames, const ClothSynthesisOptions * options, GError ** error)
+    guint n_frames, gdouble noise_m, const ClothSynthesisOptions * options,
+    GError ** error)
 {
-  const TestGapSheet sheet = { 9, 10, n_frames, 0.3, 0.34, 50., 2e-4 };
+  const TestGapSheet sheet = { 9, 10, n_frames, 0.3, 0.34, 50., noise_m };
   g_autofree gchar *folder = g_dir_make_tmp ("cloth-errors-XXXXXX", NULL);
   g_autoptr (ClothTake) take =
       test_gap_record (&sheet, reality, sway, folder, "take", seed);
@@ -111,7 +113,7 @@ count (gboolean is_finer, guint held[2], gdouble off[2], gdouble widths[2])
     g_autoptr (ClothModel) reality = draw_reality (seed, is_finer);
     g_autoptr (GError) error = NULL;
     g_autoptr (ClothSynthesis) s =
-        fit (reality, model, seed, 100, &options, &error);
+        fit (reality, model, seed, 100, NOISE_M, &options, &error);
 
     g_assert_no_error (error);
     for (guint i = 0; i < N_NUMBERS; i++) {
@@ -178,7 +180,7 @@ test_threads (void)
     g_autoptr (GError) error = NULL;
 
     options.rollout.threads = k ? 3 : 1;
-    fitted[k] = fit (reality, model, 1, 30, &options, &error);
+    fitted[k] = fit (reality, model, 1, 30, NOISE_M, &options, &error);
     g_assert_no_error (error);
   }
   for (guint i = 0; i < N_NUMBERS; i++) {
@@ -206,12 +208,60 @@ test_fine_already (void)
   cloth_synthesis_options_init (&options);
   cloth_model_set_effect (model, cloth_effect_find ("mesh_resolution"),
       &halved);
-  s = fit (reality, model, 1, 30, &options, &error);
+  s = fit (reality, model, 1, 30, NOISE_M, &options, &error);
   g_assert_no_error (error);
   for (guint i = 0; i < N_NUMBERS; i++) {
     g_assert_true (number_of (s, i)->sigma > 0.);
     g_assert_true (isnan (number_of (s, i)->finer));
     g_assert_true (isnan (number_of (s, i)->finer_sigma));
+  }
+}
+
+/* A recording says nothing of the friction on obstacles that are not there: it is as open as its range has it. */
+static void
+test_unknown (void)
+{
+  static const gchar *const name = "effects.friction.coefficient";
+  const ClothModelFree friction = { g_strdup (name), {0., 1.} };
+  const gdouble values[2] = { 0.3, -1000. };    /* and no floor */
+  g_autoptr (ClothModel) model = free_model ();
+  g_autoptr (ClothModel) reality = draw_reality (1, FALSE);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothSynthesis) s = NULL;
+  const ClothSynthesisNumber *n;
+  ClothSynthesisOptions options;
+
+  cloth_synthesis_options_init (&options);
+  cloth_model_set_effect (model, cloth_effect_find ("friction"), values);
+  g_array_append_val (model->free, friction);
+  s = fit (reality, model, 1, 30, NOISE_M, &options, &error);
+  g_assert_no_error (error);
+  n = &g_array_index (s->numbers, ClothSynthesisNumber, N_NUMBERS);
+  g_assert_cmpstr (n->name, ==, name);
+  g_test_message ("%s: %.3g ± %.3g, finer %.3g ± %.3g", n->name, n->value,
+      n->sigma, n->finer, n->finer_sigma);
+  g_assert_cmpfloat (n->value, ==, values[0]);
+  g_assert_cmpfloat (n->sigma, >, 0.1);
+  g_assert_cmpfloat (n->finer_sigma, >=, n->sigma);
+}
+
+/* A recording that is hardly longer than imitations are drawn is fitted, and no more is said. */
+static void
+test_short (void)
+{
+  g_autoptr (ClothModel) model = free_model ();
+  g_autoptr (ClothModel) reality = draw_reality (1, FALSE);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothSynthesis) s = NULL;
+  ClothSynthesisOptions options;
+
+  cloth_synthesis_options_init (&options);
+  s = fit (reality, model, 1, 9, NOISE_M, &options, &error);
+  g_assert_no_error (error);
+  for (guint i = 0; i < N_NUMBERS; i++) {
+    g_assert_true (isfinite (number_of (s, i)->value));
+    g_assert_true (isnan (number_of (s, i)->sigma));
+    g_assert_true (isnan (number_of (s, i)->finer));
   }
 }
 
@@ -245,7 +295,7 @@ test_stopped (void)
     g_autoptr (ClothSynthesis) s = NULL;
 
     patience.left = after;
-    s = fit (reality, model, 1, 30, &options, &error);
+    s = fit (reality, model, 1, 30, NOISE_M, &options, &error);
     if (s) {
       g_assert_cmpuint (after, >, 500);
       break;
@@ -262,6 +312,8 @@ main (int argc, char **argv)
   g_test_add_func ("/fiterrors/finer", test_finer);
   g_test_add_func ("/fiterrors/threads", test_threads);
   g_test_add_func ("/fiterrors/fine-already", test_fine_already);
+  g_test_add_func ("/fiterrors/unknown", test_unknown);
+  g_test_add_func ("/fiterrors/short", test_short);
   g_test_add_func ("/fiterrors/stopped", test_stopped);
   return g_test_run ();
 }

@@ -5,16 +5,20 @@
  *   noise, what was hidden, smoothing, and that features of one motion hang together. So the error of the
  *   one is drawn from what the errors of the others are (parametric bootstrap).
  *   Imitations by the cloth on a mesh twice as fine show what the mesh does to the numbers. Those numbers of the
- *   finer mesh count whose imitations fit as those of the fitted numbers do (indirect inference).
- * Assumption: a few steps by the same derivatives lead to where a fit of an imitation ends.
+ *   finer mesh count whose imitations, fitted by the mesh as it is, end where those of the fitted numbers do
+ *   (indirect inference).
+ * Assumption: a few steps by the same derivatives lead to where a fit of an imitation ends. While an imitation is
+ *   drawn at first, which is a small part of it, springs act on it.
  * Formula: with B, W and Λ of the fit, A = BᵀWB/φ + Λ and z (δ) an imitation's residual at θ + δ,
  *     δ ← δ − A⁻¹ (BᵀW z (δ)/φ + Λδ)                                      (chord method),
  *   back most of the way where that made zᵀWz/φ + δᵀΛδ larger.
- *   With the ends e_k of K imitations σ² = K/(K − 2) · Σ e_k²/K: the variance of Student's distribution of a
- *   further one. On the finer mesh θ′ ← θ′ − mean (e′_k − e_k), by the same noise. What all further
- *   halvings of its edges would change is, where errors are of first order in them, as much again, ½ + ¼ + …,
- *   and so far off it may be:
- *     σ′² = σ² + (θ′ − θ)².
+ *   With the ends e_k of K imitations s² = K/(K − 2) · Σ e_k²/K: the variance of Student's distribution of a
+ *   further one. Imitations begin at their own truth, which the prior does not; with what it holds back
+ *     σ² = s² + (A⁻¹ΛA⁻¹)ᵢᵢ.
+ *   On the finer mesh θ′ ← θ′ − c, c = mean (e′_k − e_k), both of which are off by s/√K at most. What all
+ *   further halvings of its edges would change is, where errors are of first order in them, as much again,
+ *   ½ + ¼ + …, and so far off it may be; with the last c
+ *     σ′² = σ² + 2s²/K + c² + (θ′ − θ)².
  * Reference: Efron and Tibshirani, An Introduction to the Bootstrap, 1993, section 6.5; Gouriéroux, Monfort
  *   and Renault, Indirect inference, 1993; Roache, Quantification of uncertainty in computational fluid
  *   dynamics, 1997 (refinement of grids); Ortega and Rheinboldt, 1970, section 7.1 (chord method).
@@ -29,7 +33,7 @@
 #include "gst/fit/error.h"
 #include "gst/fit/recording/recording.h"
 
-/* Imitations: as many as, let go beside drawn, fill a group of lanes. */
+/* Imitations: eight drawn and eight let go fill a group of 16 lanes. */
 #define N_IMITATIONS 8
 /* How long the cloth is drawn first, in times that it remembers. */
 #define LEAD 2.
@@ -41,6 +45,8 @@
 #define LONGEST_STEP 1.5
 /* A step that made things worse is cut to this share. */
 #define CUT 0.4
+/* Imitations of a recording take no more memory, bytes; a longer one has no deviations. */
+#define MOST_MEMORY 2e9
 /* Of the mesh's edges. */
 static const gdouble halved = 2.;
 
@@ -62,7 +68,7 @@ typedef struct
 static void
 fit_clear (Fit * fit)
 {
-  for (guint t = 0; t < fit->n; t++) {
+  for (guint t = 0; fit->studies && t < fit->n; t++) {
     cloth_sensitivities_free (fit->studies[t]);
     g_free (fit->weights[t]);
   }
@@ -202,13 +208,61 @@ cloth_synthesis_straighten (ClothRecording ** recordings, guint n,
   return TRUE;
 }
 
-/* Makes imitations of recording @t by @model, each by a run of its own, as folds fall one way or the other. FALSE
- * without an error: it diverges. */
+/* Where the fit of an imitation is. */
+typedef struct
+{
+  gdouble *delta;               /* from the fitted numbers: the best place so far */
+  gdouble *step;                /* from there to the next one */
+  gdouble *score;               /* BᵀWz/φ + Λδ there */
+  gdouble cost;                 /* zᵀWz/φ + δᵀΛδ there */
+  gdouble best;                 /* at the best place */
+  gboolean sound;               /* it could be made and followed */
+} Search;
+
+static void
+searches_clear (Search * searches)
+{
+  for (guint k = 0; k < N_IMITATIONS; k++) {
+    g_free (searches[k].delta);
+    g_free (searches[k].step);
+    g_free (searches[k].score);
+  }
+}
+
+static void
+searches_init (Search * searches, guint m)
+{
+  for (guint k = 0; k < N_IMITATIONS; k++)
+    searches[k] = (Search) {
+    g_new0 (gdouble, m), g_new0 (gdouble, m), g_new0 (gdouble, m)};
+}
+
+/* How long the cloth is drawn first, s. */
+static gdouble
+find_lead (const Fit * fit)
+{
+  return LEAD / (CLOTH_ROLLOUT_ZETA * sqrt (fit->options->gain));
+}
+
+/* Whether a recording lasts long enough to be imitated, and not too long. */
+static gboolean
+can_be_imitated (const Fit * fit, const ClothRecording * r)
+{
+  const gdouble frame = 3. * r->n * sizeof (gdouble);
+
+  /* places, velocities, targets and paths */
+  return 2 * cloth_rollout_count_led (r, find_lead (fit)) < r->n_frames
+      && 4. * N_IMITATIONS * frame * r->n_frames < MOST_MEMORY;
+}
+
+/* Makes imitations of recording @t by @model, each by a run of its own, as folds fall one way or the other. Those
+ * that diverge are the recording itself, and not sound. */
 static gboolean
 imitate (const Fit * fit, guint t, const ClothModel * model,
-    ClothRecording ** made, GError ** error)
+    ClothRecording ** made, Search * searches, GError ** error)
 {
   const ClothRecording *r = fit->recordings[t];
+  const gsize all = 3 * (gsize) r->n * r->n_frames;
   const gdouble gain = fit->options->gain;
   ClothRolloutOptions quiet = fit->options->rollout;
   const ClothModel *models[N_IMITATIONS];
@@ -217,6 +271,8 @@ imitate (const Fit * fit, guint t, const ClothModel * model,
   gboolean sound[N_IMITATIONS];
 
   quiet.failed = NULL;
+  /* what chance does to the cloth is not known to who fits it */
+  quiet.seed += 1 + t;
   fit->options->simulations += 2 * N_IMITATIONS;
   for (guint i = 0; i < N_IMITATIONS; i++) {
     models[i] = model;
@@ -224,15 +280,16 @@ imitate (const Fit * fit, guint t, const ClothModel * model,
     paths[i] = made[i]->y;
   }
   if (!cloth_rollout_led (r, models, gains, N_IMITATIONS,
-          LEAD / (CLOTH_ROLLOUT_ZETA * sqrt (gain)), &quiet, keep, &k, sound,
-          error))
+          find_lead (fit), &quiet, keep, &k, sound, error))
     return FALSE;
   for (guint i = 0; i < N_IMITATIONS; i++) {
+    searches[i].sound = searches[i].sound && sound[i];
     if (!sound[i])
-      return FALSE;
+      memcpy (made[i]->y, r->y, all * sizeof (gdouble));
     cloth_imitation_spoil (made[i], r, 1., fit->options->rollout.seed +
         t * N_IMITATIONS + i + 1);
   }
+  quiet.seed = fit->options->rollout.seed;
   return cloth_synthesis_straighten (made, N_IMITATIONS, fit->model, gain,
       &quiet, error);
 }
@@ -253,36 +310,6 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
   if (model < N_IMITATIONS)
     cloth_features_add (r->features, r->made[model], frame, positions,
         r->z + model * r->features->size);
-}
-
-/* Where the fit of an imitation is. */
-typedef struct
-{
-  gdouble *delta;               /* from the fitted numbers: the best place so far */
-  gdouble *step;                /* from there to the next one */
-  gdouble *score;               /* BᵀWz/φ + Λδ there */
-  gdouble cost;                 /* zᵀWz/φ + δᵀΛδ there */
-  gdouble best;                 /* at the best place */
-  gboolean sound;
-} Search;
-
-static void
-searches_clear (Search * searches)
-{
-  for (guint k = 0; k < N_IMITATIONS; k++) {
-    g_free (searches[k].delta);
-    g_free (searches[k].step);
-    g_free (searches[k].score);
-  }
-}
-
-static void
-searches_init (Search * searches, guint m)
-{
-  for (guint k = 0; k < N_IMITATIONS; k++)
-    searches[k] = (Search) {
-    g_new0 (gdouble, m), g_new0 (gdouble, m), g_new0 (gdouble, m),.sound =
-        TRUE};
 }
 
 /* Adds what the imitations of recording @t, followed by these models, have in the scores and costs. */
@@ -382,8 +409,7 @@ try_places (const Fit * fit, const Imitations * all, Search * searches,
   return TRUE;
 }
 
-/* Fits imitations by a model, from the best places of other fits on. Those that can't be followed are not sound. FALSE
- * without an error: the model diverges. */
+/* Fits imitations by a model, from the best places of other fits on. */
 static gboolean
 fit_imitations (const Fit * fit, const ClothModel * model, Search * searches,
     GError ** error)
@@ -394,13 +420,14 @@ fit_imitations (const Fit * fit, const ClothModel * model, Search * searches,
 
   for (guint i = 0; i < all.n; i++)
     all.made[i] = cloth_imitation_new (fit->recordings[i / N_IMITATIONS]);
-  for (guint t = 0; t < fit->n; t++)
-    if (!imitate (fit, t, model, all.made + t * N_IMITATIONS, error))
-      return FALSE;
   for (guint k = 0; k < N_IMITATIONS; k++) {
     searches[k].best = INFINITY;
+    searches[k].sound = TRUE;
     memset (searches[k].step, 0, fit->m * sizeof (gdouble));
   }
+  for (guint t = 0; t < fit->n; t++)
+    if (!imitate (fit, t, model, all.made + t * N_IMITATIONS, searches, error))
+      return FALSE;
   for (guint pass = 0; pass < N_TRIED; pass++) {
     if (!try_places (fit, &all, searches, error))
       return FALSE;
@@ -408,14 +435,13 @@ fit_imitations (const Fit * fit, const ClothModel * model, Search * searches,
       go_on (fit, &searches[k]);
   }
   for (guint k = 0; k < N_IMITATIONS; k++)
-    searches[k].sound = isfinite (searches[k].best);
+    searches[k].sound = searches[k].sound && isfinite (searches[k].best);
   return TRUE;
 }
 
-/* Standard deviations by the ends of fits. */
+/* Variances by the ends of fits, s²; NaN where too few could be made. */
 static void
-find_sigmas (const Fit * fit, const Search * searches,
-    ClothSynthesisError * errors)
+find_variances (const Fit * fit, const Search * searches, gdouble * variances)
 {
   guint n = 0;
 
@@ -426,16 +452,33 @@ find_sigmas (const Fit * fit, const Search * searches,
 
     for (guint k = 0; k < N_IMITATIONS; k++)
       sum += searches[k].sound ? pow (searches[k].delta[i], 2.) : 0.;
-    errors[i] = (ClothSynthesisError) {
-    n > 2 ? sqrt (sum / (n - 2)) : NAN, NAN, NAN};
+    variances[i] = n > 2 ? sum / (n - 2) : NAN;
   }
 }
 
-/* Moves the numbers of the finer mesh to where its imitations fit as those of the fitted ones. FALSE: there is none
- * of both kinds to hold against each other. */
+/* Adds what the prior holds back. */
+static void
+find_sigmas (const Fit * fit, const gdouble * variances,
+    ClothSynthesisError * errors)
+{
+  const guint m = fit->m;
+  g_autofree gdouble *inverse = g_new (gdouble, (gsize) m * m);
+
+  cloth_posterior_covariance (&fit->posterior, inverse);
+  for (guint i = 0; i < m; i++) {
+    gdouble held = 0.;
+
+    for (guint j = 0; j < m; j++)
+      held += fit->precisions[j] * pow (inverse[i * m + j], 2.);
+    errors[i].sigma = sqrt (variances[i] + held);
+  }
+}
+
+/* Moves the numbers of the finer mesh to where its imitations fit as those of the fitted ones; @last is by how
+ * much. FALSE: there is none of both kinds to hold against each other. */
 static gboolean
 move_finer (const Fit * fit, const Search * searches, const Search * finer,
-    gdouble * moved)
+    gdouble * moved, gdouble * last)
 {
   guint n = 0;
 
@@ -450,17 +493,21 @@ move_finer (const Fit * fit, const Search * searches, const Search * finer,
     for (guint k = 0; k < N_IMITATIONS; k++)
       sum += searches[k].sound && finer[k].sound ? finer[k].delta[i] -
           searches[k].delta[i] : 0.;
-    moved[i] -= sum / n;
-    moved[i] = CLAMP (place + moved[i], d->fit_low, d->fit_high) - place;
+    last[i] = sum / n;
+    moved[i] = CLAMP (place + moved[i] - last[i], d->fit_low, d->fit_high) -
+        place;
   }
   return n > 0;
 }
 
-/* What the numbers are on a mesh twice as fine. FALSE without an error: that can't be told. */
+/* What the numbers are on a mesh twice as fine: where the range ends they are not known. FALSE without an error: none
+ * are. */
 static gboolean
-find_finer (const Fit * fit, const Search * searches, gdouble * moved,
-    GError ** error)
+find_finer (const Fit * fit, const Search * searches,
+    const gdouble * variances, ClothSynthesisError * errors, GError ** error)
 {
+  g_autofree gdouble *moved = g_new0 (gdouble, fit->m);
+  g_autofree gdouble *last = g_new0 (gdouble, fit->m);
   Search finer[N_IMITATIONS];
   gboolean done = TRUE;
 
@@ -471,20 +518,44 @@ find_finer (const Fit * fit, const Search * searches, gdouble * moved,
     cloth_model_set_effect (model, cloth_effect_find ("mesh_resolution"),
         &halved);
     done = fit_imitations (fit, model, finer, error)
-        && move_finer (fit, searches, finer, moved);
+        && move_finer (fit, searches, finer, moved, last);
   }
   searches_clear (finer);
+  for (guint i = 0; i < fit->m && done; i++) {
+    const ClothDirection *d = cloth_candidates_direction (fit->candidates, i);
+    const gdouble place = moved[i] + cloth_candidates_place (fit->candidates,
+        fit->model, i);
+
+    if (!(place > d->fit_low && place < d->fit_high))
+      continue;
+    errors[i].finer = place;
+    errors[i].finer_sigma = sqrt (pow (errors[i].sigma, 2.) +
+        2. * variances[i] / N_IMITATIONS + last[i] * last[i] +
+        moved[i] * moved[i]);
+  }
   return done;
 }
 
+/* Whether the model says itself how fine its mesh is. */
 static gboolean
-has_effect (const ClothModel * model, const gchar * id)
+has_resolution (const ClothModel * model)
 {
-  for (guint i = 0; i < model->effects->len; i++)
-    if (g_str_equal (g_array_index (model->effects, ClothModelEffect,
-                i).effect->id, id))
+  for (guint i = 0; i < model->effects->len; i++) {
+    const ClothModelEffect *e = &g_array_index (model->effects,
+        ClothModelEffect, i);
+
+    if (g_str_equal (e->effect->id, "mesh_resolution") && e->values[0] != 1.)
       return TRUE;
+  }
   return FALSE;
+}
+
+/* Models that can't be simulated leave errors unknown; whoever looks at the fitted cloth is told. */
+static gboolean
+is_of_model (const GError * failed)
+{
+  return g_error_matches (failed, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL)
+      || g_error_matches (failed, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL);
 }
 
 /* @recordings: (array length=n): what was fitted
@@ -497,7 +568,8 @@ has_effect (const ClothModel * model, const gchar * id)
  *
  * The model is simulated as the cloth, as it is and on a mesh twice as fine, and fitted to that again.
  *
- * Returns: whether that could be done; what diverges leaves NaN
+ * Returns: whether that could be done. What diverges leaves NaN, and so does a recording that is too short or too
+ *   long to be imitated
  */
 gboolean
 cloth_synthesis_find_errors (ClothRecording ** recordings, guint n,
@@ -507,31 +579,27 @@ cloth_synthesis_find_errors (ClothRecording ** recordings, guint n,
 {
   const guint m = candidates->n_free;
   g_auto (Fit) fit = { recordings, n, candidates, m, model, options };
-  g_autofree gdouble *moved = g_new0 (gdouble, m);
+  g_autofree gdouble *variances = g_new (gdouble, m);
   g_autoptr (GError) failed = NULL;
   Search searches[N_IMITATIONS];
+  gboolean possible = TRUE;
 
   for (guint i = 0; i < m; i++)
     errors[i] = (ClothSynthesisError) {
     NAN, NAN, NAN};
+  for (guint t = 0; t < n; t++)
+    possible = possible && can_be_imitated (&fit, recordings[t]);
   searches_init (searches, m);
-  if (fit_init (&fit, &failed) && cloth_posterior_solve (&fit.posterior)
+  if (possible && fit_init (&fit, &failed)
+      && cloth_posterior_solve (&fit.posterior)
       && fit_imitations (&fit, model, searches, &failed)) {
-    find_sigmas (&fit, searches, errors);
-    if (!has_effect (model, "mesh_resolution")
-        && find_finer (&fit, searches, moved, &failed))
-      for (guint i = 0; i < m; i++) {
-        errors[i].finer = cloth_candidates_place (candidates, model, i) +
-            moved[i];
-        errors[i].finer_sigma =
-            hypot (errors[i].sigma * sqrt (1. + 2. / N_IMITATIONS), moved[i]);
-      }
-    /* a mesh that can't be made so fine */
-    if (g_error_matches (failed, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL))
-      g_clear_error (&failed);
+    find_variances (&fit, searches, variances);
+    find_sigmas (&fit, variances, errors);
+    if (!has_resolution (model))
+      find_finer (&fit, searches, variances, errors, &failed);
   }
   searches_clear (searches);
-  if (!failed)
+  if (!failed || is_of_model (failed))
     return TRUE;
   g_propagate_error (error, g_steal_pointer (&failed));
   return FALSE;
