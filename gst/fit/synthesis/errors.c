@@ -1,27 +1,20 @@
 /* How far off fitted numbers are: the fit is made again of recordings whose numbers are known.
  *
- * Model: the fitted cloth is simulated, freely once it has been drawn past the noise of the first frame. With the
- *   recording's noise and gaps that is an imitation of it. What spoils the fit of the recording spoils that of an imitation likewise:
- *   noise, what was hidden, smoothing, and that features of one motion hang together. So the error of the
- *   one is drawn from what the errors of the others are (parametric bootstrap).
- *   Imitations by the cloth on a mesh twice as fine show what the mesh does to the numbers. Those numbers of the
- *   finer mesh count whose imitations, fitted by the mesh as it is, end where those of the fitted numbers do
- *   (indirect inference).
- * Assumption: a few steps by the same derivatives lead to where a fit of an imitation ends. While an imitation is
- *   drawn at first, which is a small part of it, springs act on it.
+ * Model: the fitted cloth, simulated, with the recording's noise and gaps is an imitation of it. What spoils the fit of
+ *   the one spoils that of the others likewise, so its error is drawn from what theirs are (parametric bootstrap).
+ *   Imitations by a mesh twice as fine show what the mesh does: those numbers of the finer mesh count whose
+ *   imitations, fitted by the mesh as it is, end where those of the fitted numbers do (indirect inference).
+ * Assumption: a few steps by the same derivatives lead to where a fit ends. Springs draw an imitation past the
+ *   noise of the first frame.
  * Formula: with B, W and Λ of the fit, A = BᵀWB/φ + Λ and z (δ) an imitation's residual at θ + δ,
- *     δ ← δ − A⁻¹ (BᵀW z (δ)/φ + Λδ)                                      (chord method),
- *   back most of the way where that made zᵀWz/φ + δᵀΛδ larger.
- *   With the ends e_k of K imitations s² = K/(K − 2) · Σ e_k²/K: the variance of Student's distribution of a
- *   further one. Imitations begin at their own truth, which the prior does not; with what it holds back
- *     σ² = s² + (A⁻¹ΛA⁻¹)ᵢᵢ.
- *   On the finer mesh θ′ ← θ′ − c, c = mean (e′_k − e_k), both of which are off by s/√K at most. What all
- *   further halvings of its edges would change is, where errors are of first order in them, as much again,
- *   ½ + ¼ + …, and so far off it may be; with the last c
+ *     δ ← δ − A⁻¹ (BᵀW z (δ)/φ + Λδ), back most of the way where zᵀWz/φ + δᵀΛδ grows (chord method).
+ *   With the ends e_k of K imitations s² = K/(K − 2) · Σ e_k²/K, the variance of Student's distribution of a further
+ *   one. They begin at their own truth, which the prior does not: σ² = s² + (A⁻¹ΛA⁻¹)ᵢᵢ.
+ *   On the finer mesh θ′ ← θ′ − c, c = mean (e′_k − e_k), both off by s/√K at most. What all further halvings of its
+ *   edges change is, where errors are of first order in them, as much again, ½ + ¼ + …: with the last c
  *     σ′² = σ² + 2s²/K + c² + (θ′ − θ)².
- * Reference: Efron and Tibshirani, An Introduction to the Bootstrap, 1993, section 6.5; Gouriéroux, Monfort
- *   and Renault, Indirect inference, 1993; Roache, Quantification of uncertainty in computational fluid
- *   dynamics, 1997 (refinement of grids); Ortega and Rheinboldt, 1970, section 7.1 (chord method).
+ * Reference: Efron and Tibshirani, An Introduction to the Bootstrap, 1993, 6.5; Gouriéroux, Monfort and Renault, Indirect
+ *   inference, 1993; Roache, Annu. Rev. Fluid Mech. 29, 1997; Ortega and Rheinboldt, 1970, 7.1 (chord method).
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/synthesis/errors.h"
