@@ -378,7 +378,7 @@ find_hidden_error (const Scene * s, const ClothRecording * r)
   gdouble square = 0., n = 0.;
   gboolean sound;
 
-  g_assert_true (cloth_rollout_follow (r, model, FIRM, &options, x, &sound,
+  g_assert_true (cloth_rollout_follow (&r, 1, model, FIRM, &options, x, &sound,
           NULL));
   g_assert_true (sound);
   for (gsize at = N * N_FRAMES / 3; at < N * N_FRAMES; at++) {

@@ -18,12 +18,8 @@
 
 #include "gst/fit/error.h"
 
-/* No step of a fit is longer than this many priors. */
-#define LONGEST_STEP 1.5
 /* A fit ends when it gains less than this share. */
 #define LEAST_GAIN 4e-3
-/* A step that made things worse is cut to this share. */
-#define CUT 0.4
 
 /* Cost of the place at hand, and its posterior when one is given. */
 static gdouble
@@ -85,9 +81,9 @@ cloth_gauss_newton_run (const ClothGaussNewtonProblem * problem,
           return TRUE;
         }
         /* back, most of the way */
-        problem->move (data, step, CUT - 1., moved);
+        problem->move (data, step, CLOTH_GAUSS_NEWTON_CUT - 1., moved);
         for (guint i = 0; i < m; i++)
-          step[i] *= CUT;
+          step[i] *= CLOTH_GAUSS_NEWTON_CUT;
         continue;
       }
       if (before - cost < LEAST_GAIN * before)
@@ -294,7 +290,7 @@ cloth_gauss_newton_fit (ClothSensitivities ** sensitivities, guint n,
   };
 
   for (guint i = 0; i < m; i++)
-    longest[i] = LONGEST_STEP *
+    longest[i] = CLOTH_GAUSS_NEWTON_LONGEST_STEP *
         cloth_candidates_direction (candidates, directions[i])->prior;
   if (!cloth_gauss_newton_run (&problem, &fit, &how, sigmas, error))
     return NULL;

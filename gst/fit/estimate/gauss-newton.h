@@ -29,6 +29,11 @@ typedef struct {
   void (*restore) (gpointer data);
 } ClothGaussNewtonProblem;
 
+/* No step of a fit is longer than this many priors. */
+#define CLOTH_GAUSS_NEWTON_LONGEST_STEP 1.5
+/* A step that made things worse is cut to this share. */
+#define CLOTH_GAUSS_NEWTON_CUT 0.4
+
 /* @m: number of unknowns
  * @precisions: (array length=m): of their priors, centred at the start
  * @longest: (array length=m): no step is longer than this

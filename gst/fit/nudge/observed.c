@@ -445,7 +445,7 @@ turn (Maker * m, const ClothModel * model, gdouble gain,
   gdouble sum = 0.;
   gboolean sound;
 
-  if (!cloth_rollout_follow (r, model, gain, options, x, &sound, error))
+  if (!cloth_rollout_follow (&r, 1, model, gain, options, x, &sound, error))
     return NAN;
   if (!sound) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the "

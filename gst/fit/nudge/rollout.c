@@ -451,38 +451,47 @@ cloth_rollout_nudged (const ClothRecording * const *targets,
 
 typedef struct
 {
-  gdouble *path;
-  gsize row;
-} Path;
+  gdouble *paths;
+  gsize row, all;               /* numbers of a frame, of a path */
+} Paths;
 
 static void
-keep_path (gpointer data, guint model, guint frame, const gdouble * positions)
+keep_paths (gpointer data, guint model, guint frame, const gdouble * positions)
 {
-  const Path *p = data;
+  const Paths *p = data;
 
-  memcpy (p->path + frame * p->row, positions, p->row * sizeof *p->path);
+  memcpy (p->paths + model * p->all + frame * p->row, positions,
+      p->row * sizeof *p->paths);
 }
 
-/* @recording: what draws the model, and where it starts
+/* @targets: (array length=n): what draws the model, and where it starts, as cloth_rollout_nudged () has it
+ * @n: how many, at least 1
  * @model: the model
  * @gain: of its observer, 1/s²
  * @options: how to simulate
- * @path: (out) (array): where the model is in each frame, [n_frames][n][3], m
- * @sound: (out): whether it did not diverge
+ * @paths: (out) (array): where each target has the model in each frame, [n][n_frames][vertices][3], m
+ * @sound: (out) (array length=n): where it did not diverge
  * @error: #ClothSimError, or #ClothFitError when it was stopped
  *
  * cloth_rollout_nudged () of one model, kept.
  */
 gboolean
-cloth_rollout_follow (const ClothRecording * recording,
+cloth_rollout_follow (const ClothRecording * const *targets, guint n,
     const ClothModel * model, gdouble gain,
-    const ClothRolloutOptions * options, gdouble * path, gboolean * sound,
+    const ClothRolloutOptions * options, gdouble * paths, gboolean * sound,
     GError ** error)
 {
-  Path keep = { path, 3 * (gsize) recording->n };
+  const gsize row = 3 * (gsize) targets[0]->n;
+  g_autofree const ClothModel **models = g_new (const ClothModel *, n);
+  g_autofree gdouble *gains = g_new (gdouble, n);
+  Paths keep = { paths, row, row * targets[0]->n_frames };
 
-  return cloth_rollout_nudged (&recording, &model, &gain, 1, options,
-      keep_path, &keep, sound, error);
+  for (guint i = 0; i < n; i++) {
+    models[i] = model;
+    gains[i] = gain;
+  }
+  return cloth_rollout_nudged (targets, models, gains, n, options, keep_paths,
+      &keep, sound, error);
 }
 
 /* @recording: a recording

@@ -52,9 +52,9 @@ gboolean cloth_rollout_nudged (const ClothRecording * const *targets,
     const ClothModel * const *models, const gdouble * gains, guint n_models,
     const ClothRolloutOptions * options, ClothRolloutFrame on_frame,
     gpointer data, gboolean * sound, GError ** error);
-gboolean cloth_rollout_follow (const ClothRecording * recording,
+gboolean cloth_rollout_follow (const ClothRecording * const *targets, guint n,
     const ClothModel * model, gdouble gain,
-    const ClothRolloutOptions * options, gdouble * path, gboolean * sound,
+    const ClothRolloutOptions * options, gdouble * paths, gboolean * sound,
     GError ** error);
 gboolean cloth_rollout_led (const ClothRecording * recording,
     const ClothModel * const *models, const gdouble * gains, guint n_models,

@@ -1,63 +1,102 @@
-/* Recordings that a simulation made in place of the cloth: what a fit or a diagnosis makes of them is known
+/* Recordings that simulations made in place of the cloth: what a fit or a diagnosis makes of them is known
  * beforehand.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/recording/imitation.h"
+
+#include <string.h>
 
 #include "gst/fit/recording/interpolation.h"
 #include "gst/fit/recording/noise.h"
 #include "gst/fit/recording/signal.h"
 #include "gst/fit/recording/start.h"
 
-/* @recording: a recording; must outlive its imitation
+/* @recording: a recording; must outlive its imitations
+ * @n: how many
  *
- * Returns: (transfer full): one of the same scene, times, noise and gaps, whose cloth is nowhere yet: @y is to
- *   be filled
+ * Returns: (transfer full): recordings of the same scene, times, noise and gaps, whose cloth is nowhere yet
  */
-ClothRecording *
-cloth_imitation_new (const ClothRecording * recording)
+ClothImitations *
+cloth_imitations_new (const ClothRecording * recording, guint n)
 {
   const gsize all = 3 * (gsize) recording->n * recording->n_frames;
-  ClothRecording *imitation = g_memdup2 (recording, sizeof *recording);
+  ClothImitations *imitations = g_new (ClothImitations, 1);
 
-  imitation->y = g_new0 (gdouble, all);
-  imitation->velocity = g_new0 (gdouble, all);
-  imitation->targets = NULL;
-  return imitation;
+  *imitations = (ClothImitations) {
+  recording, g_new (ClothRecording *, n), n};
+  for (guint i = 0; i < n; i++) {
+    ClothRecording *r = imitations->list[i] =
+        g_memdup2 (recording, sizeof *recording);
+
+    r->y = g_new0 (gdouble, all);
+    r->velocity = g_new0 (gdouble, all);
+    r->targets = NULL;
+  }
+  return imitations;
 }
 
-/* @imitation: (inout): an imitation whose @y a simulation has filled that began where the recording did
- * @recording: what it imitates
- * @noise: which share of the recording's noise it gets
+/* @imitations: #ClothImitations
+ * @model: which of them
+ * @frame: which frame
+ * @positions: where a simulation that began where the recording did has the vertices, [n][3], m
+ *
+ * Keeps a frame, as simulations report it.
+ */
+void
+cloth_imitations_keep (gpointer imitations, guint model, guint frame,
+    const gdouble * positions)
+{
+  const ClothImitations *all = imitations;
+  const gsize row = 3 * (gsize) all->of->n;
+
+  memcpy (all->list[model]->y + frame * row, positions, row * sizeof (gdouble));
+}
+
+/* @imitations: (inout): imitations with all their frames
+ * @sound: (array length=n): which of the simulations did not diverge; in place of others the recording stands
+ * @noise: which share of the recording's noise they get
  * @seed: of that
  *
- * Makes a simulation look recorded: noise, and what was not seen stays hidden. Where the first frame of the
- * recording could not be freed of its noise the simulation has it already.
+ * Makes simulations look recorded: noise, and what was not seen stays hidden. Where the first frame of the
+ * recording could not be freed of its noise the simulations have it already.
  */
 void
-cloth_imitation_spoil (ClothRecording * imitation,
-    const ClothRecording * recording, gdouble noise, guint64 seed)
+cloth_imitations_spoil (ClothImitations * imitations, const gboolean * sound,
+    gdouble noise, guint64 seed)
 {
-  ClothRecording *r = imitation;
-  const gboolean is_smooth = cloth_recording_find_start (recording, r->y, NULL);
-  ClothRandom random;
+  const gsize places = (gsize) imitations->of->n * imitations->of->n_frames;
 
-  cloth_random_init (&random, seed);
-  for (gsize i = is_smooth ? 0 : r->n; i < (gsize) r->n * r->n_frames; i++)
-    cloth_recording_add_noise (r, i, noise, &random, r->y + 3 * i);
-  cloth_recording_interpolate (r);
-  cloth_recording_differentiate (r);
+  for (guint i = 0; i < imitations->n; i++) {
+    ClothRecording *r = imitations->list[i];
+    ClothRandom random;
+    gboolean is_smooth;
+
+    if (!sound[i]) {
+      memcpy (r->y, imitations->of->y, 3 * places * sizeof (gdouble));
+      continue;
+    }
+    is_smooth = cloth_recording_find_start (imitations->of, r->y, NULL);
+    cloth_random_init (&random, seed + i);
+    for (gsize at = is_smooth ? 0 : r->n; at < places; at++)
+      cloth_recording_add_noise (r, at, noise, &random, r->y + 3 * at);
+    cloth_recording_interpolate (r);
+    cloth_recording_differentiate (r);
+  }
 }
 
-/* @imitation: (nullable) (transfer full): an imitation
+/* @imitations: (nullable) (transfer full): imitations
  */
 void
-cloth_imitation_free (ClothRecording * imitation)
+cloth_imitations_free (ClothImitations * imitations)
 {
-  if (!imitation)
+  if (!imitations)
     return;
-  g_free (imitation->y);
-  g_free (imitation->velocity);
-  g_free (imitation->targets);
-  g_free (imitation);
+  for (guint i = 0; i < imitations->n; i++) {
+    g_free (imitations->list[i]->y);
+    g_free (imitations->list[i]->velocity);
+    g_free (imitations->list[i]->targets);
+    g_free (imitations->list[i]);
+  }
+  g_free (imitations->list);
+  g_free (imitations);
 }

@@ -1,4 +1,4 @@
-/* Recordings that a simulation made in place of the cloth.
+/* Recordings that simulations made in place of the cloth.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -7,9 +7,22 @@
 
 G_BEGIN_DECLS
 
-ClothRecording *cloth_imitation_new (const ClothRecording * recording);
-void cloth_imitation_spoil (ClothRecording * imitation,
-    const ClothRecording * recording, gdouble noise, guint64 seed);
-void cloth_imitation_free (ClothRecording * imitation);
+/* @of: what they imitate
+ * @list: (array length=n): they
+ * @n: how many
+ */
+typedef struct {
+  const ClothRecording *of;
+  ClothRecording **list;
+  guint n;
+} ClothImitations;
+
+ClothImitations *cloth_imitations_new (const ClothRecording * recording,
+    guint n);
+void cloth_imitations_keep (gpointer imitations, guint model, guint frame,
+    const gdouble * positions);
+void cloth_imitations_spoil (ClothImitations * imitations,
+    const gboolean * sound, gdouble noise, guint64 seed);
+void cloth_imitations_free (ClothImitations * imitations);
 
 G_END_DECLS

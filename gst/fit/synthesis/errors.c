@@ -34,10 +34,6 @@
 #define N_TRIED 4
 /* How often the numbers of the finer mesh are looked for. */
 #define N_SEARCHES 3
-/* No step is longer than this many priors. */
-#define LONGEST_STEP 1.5
-/* A step that made things worse is cut to this share. */
-#define CUT 0.4
 /* Imitations of a recording take no more memory, bytes; a longer one has no deviations. */
 #define MOST_MEMORY 2e9
 /* Of the mesh's edges. */
@@ -83,13 +79,10 @@ weigh (Fit * fit, guint t)
   g_autoptr (ClothPowerSpectrum) power = cloth_power_spectrum_new (f, s->z);
   g_autoptr (ClothNormalEquations) normal = cloth_normal_equations_new (f,
       power, s->z, s->columns, fit->m);
-  g_autofree guint *columns = g_new (guint, fit->m);
   g_autofree gdouble *g = g_new (gdouble, (gsize) fit->m * fit->m);
   g_autofree gdouble *score = g_new (gdouble, fit->m);
 
-  for (guint i = 0; i < fit->m; i++)
-    columns[i] = i;
-  cloth_normal_equations_sum (normal, NULL, columns, fit->m, g, score);
+  cloth_normal_equations_project (normal, NULL, fit->m, NULL, g, score);
   cloth_posterior_add_data (&fit->posterior, g, score,
       fit->options->overdispersion);
   fit->weights[t] = g_new (gdouble, f->size);
@@ -127,38 +120,6 @@ fit_init (Fit * fit, GError ** error)
   return TRUE;
 }
 
-/* Imitations of all recordings: [recording][imitation]. */
-typedef struct
-{
-  ClothRecording **made;
-  guint n;
-} Imitations;
-
-static void
-imitations_clear (Imitations * all)
-{
-  for (guint i = 0; i < all->n; i++)
-    cloth_imitation_free (all->made[i]);
-  g_free (all->made);
-}
-
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Imitations, imitations_clear);
-
-typedef struct
-{
-  gdouble **paths;              /* of each model, [n_frames][n][3] */
-  gsize row;
-} Keep;
-
-static void
-keep (gpointer data, guint model, guint frame, const gdouble * positions)
-{
-  const Keep *k = data;
-
-  memcpy (k->paths[model] + frame * k->row, positions,
-      k->row * sizeof (gdouble));
-}
-
 /* @recordings: (array length=n): recordings of one scene
  * @n: how many
  * @model: the model at hand
@@ -176,28 +137,19 @@ cloth_synthesis_straighten (ClothRecording ** recordings, guint n,
     const ClothModel * model, gdouble gain, const ClothRolloutOptions * rollout,
     GError ** error)
 {
-  const gsize row = 3 * (gsize) recordings[0]->n;
-  const gsize all = row * recordings[0]->n_frames;
-  g_autofree gdouble *memory = g_new (gdouble, n * all);
-  g_autofree gdouble **paths = g_new (gdouble *, n);
-  g_autofree const ClothModel **models = g_new (const ClothModel *, n);
-  g_autofree gdouble *gains = g_new (gdouble, n);
+  const gsize all = 3 * (gsize) recordings[0]->n * recordings[0]->n_frames;
+  g_autofree gdouble *paths = g_new (gdouble, n * all);
   g_autofree gboolean *sound = g_new (gboolean, n);
-  Keep k = { paths, row };
 
-  for (guint i = 0; i < n; i++) {
+  for (guint i = 0; i < n; i++)
     cloth_recording_straighten (recordings[i], NULL);
-    paths[i] = memory + i * all;
-    models[i] = model;
-    gains[i] = gain;
-  }
-  if (!cloth_rollout_nudged ((const ClothRecording * const *) recordings,
-          models, gains, n, rollout, keep, &k, sound, error))
+  if (!cloth_rollout_follow ((const ClothRecording * const *) recordings, n,
+          model, gain, rollout, paths, sound, error))
     return FALSE;
   /* where it diverges the fit says so */
   for (guint i = 0; i < n; i++)
     if (sound[i])
-      cloth_recording_straighten (recordings[i], paths[i]);
+      cloth_recording_straighten (recordings[i], paths + i * all);
   return TRUE;
 }
 
@@ -248,19 +200,17 @@ can_be_imitated (const Fit * fit, const ClothRecording * r)
       && 4. * N_IMITATIONS * frame * r->n_frames < MOST_MEMORY;
 }
 
-/* Makes imitations of recording @t by @model, each by a run of its own, as folds fall one way or the other. Those
- * that diverge are the recording itself, and not sound. */
+/* Fills imitations of recording @t by @model, each by a run of its own, as folds fall one way or the other. Those
+ * that diverge are not sound. */
 static gboolean
 imitate (const Fit * fit, guint t, const ClothModel * model,
-    ClothRecording ** made, Search * searches, GError ** error)
+    ClothImitations * made, Search * searches, GError ** error)
 {
-  const ClothRecording *r = fit->recordings[t];
-  const gsize all = 3 * (gsize) r->n * r->n_frames;
+  const guint64 seed = fit->options->rollout.seed;
   const gdouble gain = fit->options->gain;
   ClothRolloutOptions quiet = fit->options->rollout;
   const ClothModel *models[N_IMITATIONS];
-  gdouble gains[N_IMITATIONS], *paths[N_IMITATIONS];
-  Keep k = { paths, 3 * (gsize) r->n };
+  gdouble gains[N_IMITATIONS];
   gboolean sound[N_IMITATIONS];
 
   quiet.failed = NULL;
@@ -270,28 +220,23 @@ imitate (const Fit * fit, guint t, const ClothModel * model,
   for (guint i = 0; i < N_IMITATIONS; i++) {
     models[i] = model;
     gains[i] = gain * exp2 ((i + 0.5) / N_IMITATIONS - 0.5);
-    paths[i] = made[i]->y;
   }
-  if (!cloth_rollout_led (r, models, gains, N_IMITATIONS,
-          find_lead (fit), &quiet, keep, &k, sound, error))
+  if (!cloth_rollout_led (fit->recordings[t], models, gains, N_IMITATIONS,
+          find_lead (fit), &quiet, cloth_imitations_keep, made, sound, error))
     return FALSE;
-  for (guint i = 0; i < N_IMITATIONS; i++) {
+  for (guint i = 0; i < N_IMITATIONS; i++)
     searches[i].sound = searches[i].sound && sound[i];
-    if (!sound[i])
-      memcpy (made[i]->y, r->y, all * sizeof (gdouble));
-    cloth_imitation_spoil (made[i], r, 1., fit->options->rollout.seed +
-        t * N_IMITATIONS + i + 1);
-  }
-  quiet.seed = fit->options->rollout.seed;
-  return cloth_synthesis_straighten (made, N_IMITATIONS, fit->model, gain,
-      &quiet, error);
+  cloth_imitations_spoil (made, sound, 1., seed + t * N_IMITATIONS + 1);
+  quiet.seed = seed;
+  return cloth_synthesis_straighten (made->list, N_IMITATIONS, fit->model,
+      gain, &quiet, error);
 }
 
 /* Features of the residuals of models let go in windows, each of its own imitation. */
 typedef struct
 {
   const ClothFeatures *features;
-  ClothRecording **made;
+  const ClothImitations *made;
   gdouble *z;                   /* [imitation][size] */
 } Residuals;
 
@@ -301,13 +246,13 @@ collect (gpointer data, guint model, guint frame, const gdouble * positions)
   const Residuals *r = data;
 
   if (model < N_IMITATIONS)
-    cloth_features_add (r->features, r->made[model], frame, positions,
+    cloth_features_add (r->features, r->made->list[model], frame, positions,
         r->z + model * r->features->size);
 }
 
 /* Adds what the imitations of recording @t, followed by these models, have in the scores and costs. */
 static gboolean
-add_scores (const Fit * fit, guint t, ClothRecording ** made,
+add_scores (const Fit * fit, guint t, const ClothImitations * made,
     const ClothModel * const *models, Search * searches, GError ** error)
 {
   const ClothSensitivities *s = fit->studies[t];
@@ -320,9 +265,9 @@ add_scores (const Fit * fit, guint t, ClothRecording ** made,
 
   quiet.failed = NULL;
   fit->options->simulations += N_IMITATIONS;
-  if (!cloth_rollout_windows ((const ClothRecording * const *) made, models,
-          N_IMITATIONS, fit->options->gain, fit->options->window_s, &quiet,
-          collect, &residuals, followed, error))
+  if (!cloth_rollout_windows ((const ClothRecording * const *) made->list,
+          models, N_IMITATIONS, fit->options->gain, fit->options->window_s,
+          &quiet, collect, &residuals, followed, error))
     return FALSE;
   for (guint k = 0; k < N_IMITATIONS; k++) {
     const gdouble *own = z + k * size;
@@ -345,7 +290,7 @@ go_on (const Fit * fit, Search * s)
 {
   if (!(s->cost < s->best)) {
     for (guint i = 0; i < fit->m; i++)
-      s->step[i] *= CUT;
+      s->step[i] *= CLOTH_GAUSS_NEWTON_CUT;
     return;
   }
   s->best = s->cost;
@@ -354,7 +299,7 @@ go_on (const Fit * fit, Search * s)
     const ClothDirection *d = cloth_candidates_direction (fit->candidates, i);
     const gdouble place = cloth_candidates_place (fit->candidates, fit->model,
         i);
-    const gdouble longest = LONGEST_STEP * d->prior;
+    const gdouble longest = CLOTH_GAUSS_NEWTON_LONGEST_STEP * d->prior;
 
     s->delta[i] += s->step[i];
     s->step[i] = CLAMP (-s->score[i], -longest, longest);
@@ -375,9 +320,9 @@ move (const Fit * fit, const gdouble * delta)
       fit->m);
 }
 
-/* Tries the next place of each fit. */
+/* Tries the next place of each fit; @all: (element-type ClothImitations): of each recording. */
 static gboolean
-try_places (const Fit * fit, const Imitations * all, Search * searches,
+try_places (const Fit * fit, const GPtrArray * all, Search * searches,
     GError ** error)
 {
   g_autoptr (GPtrArray) models =
@@ -396,7 +341,7 @@ try_places (const Fit * fit, const Imitations * all, Search * searches,
     g_ptr_array_add (models, move (fit, delta));
   }
   for (guint t = 0; t < fit->n; t++)
-    if (!add_scores (fit, t, all->made + t * N_IMITATIONS,
+    if (!add_scores (fit, t, g_ptr_array_index (all, t),
             (const ClothModel * const *) models->pdata, searches, error))
       return FALSE;
   return TRUE;
@@ -407,22 +352,24 @@ static gboolean
 fit_imitations (const Fit * fit, const ClothModel * model, Search * searches,
     GError ** error)
 {
-  g_auto (Imitations) all = { g_new0 (ClothRecording *,
-        fit->n * N_IMITATIONS), fit->n * N_IMITATIONS
-  };
+  g_autoptr (GPtrArray) all =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_imitations_free);
 
-  for (guint i = 0; i < all.n; i++)
-    all.made[i] = cloth_imitation_new (fit->recordings[i / N_IMITATIONS]);
   for (guint k = 0; k < N_IMITATIONS; k++) {
     searches[k].best = INFINITY;
     searches[k].sound = TRUE;
     memset (searches[k].step, 0, fit->m * sizeof (gdouble));
   }
-  for (guint t = 0; t < fit->n; t++)
-    if (!imitate (fit, t, model, all.made + t * N_IMITATIONS, searches, error))
+  for (guint t = 0; t < fit->n; t++) {
+    ClothImitations *made = cloth_imitations_new (fit->recordings[t],
+        N_IMITATIONS);
+
+    g_ptr_array_add (all, made);
+    if (!imitate (fit, t, model, made, searches, error))
       return FALSE;
+  }
   for (guint pass = 0; pass < N_TRIED; pass++) {
-    if (!try_places (fit, &all, searches, error))
+    if (!try_places (fit, all, searches, error))
       return FALSE;
     for (guint k = 0; k < N_IMITATIONS; k++)
       go_on (fit, &searches[k]);

@@ -196,8 +196,8 @@ draw (ClothSynthesisTake * take, const ClothModel * model,
   gboolean sound;
 
   if (!choose_gain (take, model, o, error)
-      || !cloth_rollout_follow (r, model, take->gain, &o->rollout, path, &sound,
-          error))
+      || !cloth_rollout_follow (&r, 1, model, take->gain, &o->rollout, path,
+          &sound, error))
     return FALSE;
   for (gsize i = 0; i < all; i++)
     take->positions[i] = (gfloat) path[i];

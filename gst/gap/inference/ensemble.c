@@ -191,37 +191,24 @@ cloth_ensemble_free (ClothEnsemble * ensemble)
 typedef struct
 {
   const ClothFeatures *features;
-  ClothRecording **made;
-  guint n;
+  ClothImitations *made;
   gdouble *z;
 } Made;
 
 static void
 made_clear (Made * m)
 {
-  for (guint i = 0; i < m->n; i++)
-    cloth_imitation_free (m->made[i]);
-  g_free (m->made);
+  cloth_imitations_free (m->made);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Made, made_clear);
-
-static void
-keep (gpointer data, guint model, guint frame, const gdouble * positions)
-{
-  const Made *m = data;
-  ClothRecording *r = m->made[model];
-
-  memcpy (r->y + 3 * (gsize) frame * r->n, positions,
-      3 * r->n * sizeof (gdouble));
-}
 
 static void
 collect (gpointer data, guint model, guint frame, const gdouble * positions)
 {
   const Made *m = data;
 
-  cloth_features_add (m->features, m->made[model], frame, positions,
+  cloth_features_add (m->features, m->made->list[model], frame, positions,
       m->z + model * m->features->size);
 }
 
@@ -245,10 +232,7 @@ cloth_ensemble_run (const ClothEnsemble * ensemble,
 {
   const ClothEnsemble *e = ensemble;
   const ClothRecording *r = study->recording;
-  const gsize all = 3 * (gsize) r->n * r->n_frames;
-  g_auto (Made) m = { study->features, g_new (ClothRecording *, e->n),
-    .n = e->n,.z = z
-  };
+  g_auto (Made) m = { study->features, cloth_imitations_new (r, e->n), z };
   g_autofree const ClothModel **models = g_new (const ClothModel *, e->n);
   g_autofree gdouble *gains = g_new (gdouble, e->n);
   g_autofree gboolean *followed = g_new (gboolean, e->n);
@@ -257,22 +241,17 @@ cloth_ensemble_run (const ClothEnsemble * ensemble,
 
   quiet.failed = NULL;
   for (guint i = 0; i < e->n; i++) {
-    m.made[i] = cloth_imitation_new (r);
     models[i] = model;
     gains[i] = options->gain;
   }
   options->simulations += 2 * e->n;
   if (!cloth_rollout_free (r, (const ClothModel * const *) e->models, e->n,
-          &quiet, keep, &m, sound, error))
+          &quiet, cloth_imitations_keep, m.made, sound, error))
     return FALSE;
-  for (guint i = 0; i < e->n; i++)
-    if (sound[i])
-      cloth_imitation_spoil (m.made[i], r, noise,
-          options->rollout.seed + stream * e->n + i + 1);
-    else
-      memcpy (m.made[i]->y, r->y, all * sizeof (gdouble));
-  if (!cloth_rollout_nudged ((const ClothRecording * const *) m.made, models,
-          gains, e->n, &quiet, collect, &m, followed, error))
+  cloth_imitations_spoil (m.made, sound, noise, options->rollout.seed +
+      stream * e->n + 1);
+  if (!cloth_rollout_nudged ((const ClothRecording * const *) m.made->list,
+          models, gains, e->n, &quiet, collect, &m, followed, error))
     return FALSE;
   for (guint i = 0; i < e->n; i++)
     sound[i] = sound[i] && followed[i];
