@@ -27,6 +27,8 @@
 #define MAX_STAGES 8
 #define OTHER_COSTS 0.6
 #define LONGEST_STAGED 64.
+/* Stretched cloth takes steps of no smaller share of those at rest: what needs them is about to tear apart. */
+#define LEAST_STRAINED 0.125
 /* What rounding may make of the information in a direction of which nothing is known, of all. */
 #define ROUNDING 1e-9
 
@@ -60,8 +62,8 @@ struct _ClothSim
   gdouble *pull_gains, *pull_dampings;  /* by rank */
   /* of the running advance */
   gdouble until;
-  guint n_steps;
-  gdouble *too_long;            /* of each group */
+  guint n_steps, n_stages;
+  gdouble *too_long;            /* of each group, an implicit step */
 };
 
 static gboolean
@@ -105,18 +107,17 @@ round_step (gdouble step)
   return exp2 (floor (log2 (step) * STEPS_AN_OCTAVE + 1e-6) / STEPS_AN_OCTAVE);
 }
 
+/* The largest step, at most @longest, that all models can take. */
 static gdouble
-bound (const ClothSim * sim, guint stages, gdouble longest)
+bound (const ClothSim * sim, guint stages, gdouble longest, gboolean strained)
 {
-  for (guint i = 0; i < sim->n_groups; i++) {
-    const ClothSimGroup *g = &sim->groups[i];
-
-    longest = MIN (longest, stages > 1 ?
-        g->backend->staged_time_step (g->lanes, stages, longest) :
-        g->backend->time_step (g->lanes));
-  }
+  for (guint i = 0; i < sim->n_groups; i++)
+    longest =
+        MIN (longest, sim->groups[i].backend->time_step (sim->groups[i].lanes,
+            stages, longest, strained));
   return longest;
 }
+
 
 /* The number of stages that reaches a given step, or the one that costs least; the
  * longest step that it allows. */
@@ -124,7 +125,7 @@ static gdouble
 find_stages (ClothSim * sim)
 {
   const gdouble wanted = sim->fixed_step * MAX (sim->numerics->step_factor, 1.);
-  gdouble best = bound (sim, 1, INFINITY), longest;
+  gdouble best = bound (sim, 1, INFINITY, FALSE), longest;
 
   sim->stages = 1;
   if (sim->implicit)
@@ -132,7 +133,7 @@ find_stages (ClothSim * sim)
   /* what is tried from there on is rounded already */
   longest = round_step (LONGEST_STAGED * best);
   for (guint s = 2; s <= MAX_STAGES && !(wanted > 0. && best >= wanted); s++) {
-    gdouble step = bound (sim, s, longest);
+    gdouble step = bound (sim, s, longest, FALSE);
 
     if (wanted > 0. ? step > best : (s + OTHER_COSTS) / step <
         (sim->stages + OTHER_COSTS) / best) {
@@ -230,7 +231,7 @@ find_lighter (const ClothSim * sim)
  * Models are computed side by side in vector instructions and on several threads. What
  * becomes of a model does not depend on its neighbours, the threads or the instruction
  * set, to the last bit, but for the time step: an automatic one is the smallest that any
- * of the models needs, rounded down to an eighth of an octave.
+ * of the models needs, rounded down to an eighth of an octave, at rest or while it is stretched further.
  *
  * Models with the effects time_step, mesh_resolution or mesh_diagonals are simulated with
  * other steps or on another mesh; what goes in and comes out is about @scene's own
@@ -345,7 +346,7 @@ advance_groups (gpointer data, guint begin, guint end, guint worker)
 
   for (guint i = begin; i < end; i++)
     sim->groups[i].backend->advance (sim->groups[i].lanes, sim->until,
-        sim->n_steps, sim->stages);
+        sim->n_steps, sim->n_stages);
 }
 
 static void
@@ -397,10 +398,41 @@ advance_adaptive (ClothSim * sim, gdouble until_s)
   }
 }
 
+static void
+strain_groups (gpointer data, guint begin, guint end, guint worker)
+{
+  ClothSim *sim = data;
+
+  for (guint i = begin; i < end; i++)
+    sim->groups[i].backend->strain (sim->groups[i].lanes);
+}
+
+/* The step of cloth as it is stretched now, which is stiffer than at rest, when the step is an automatic one; and how many
+ * stages it needs. */
+static gdouble
+find_strained_step (ClothSim * sim, guint * stages)
+{
+  gdouble step;
+
+  *stages = sim->stages;
+  if (sim->fixed_step > 0.)
+    return sim->time_step;
+  cloth_pool_run_one_by_one (sim->pool, strain_groups, sim, sim->n_groups);
+  step = bound (sim, sim->stages, sim->time_step, TRUE);
+  if (step >= sim->time_step)
+    return sim->time_step;
+  step = MAX (round_step (step), sim->time_step * LEAST_STRAINED);
+  for (guint s = 1; s < sim->stages && *stages == sim->stages; s++)
+    if (bound (sim, s, step, TRUE) >= step)
+      *stages = s;
+  return step;
+}
+
 /* @sim: a simulation
  * @until_s: where to stop, seconds; nothing happens when that is not ahead
  *
- * Moves all models on, in equal steps no longer than cloth_sim_get_time_step (). A model
+ * Moves all models on, in equal steps no longer than cloth_sim_get_time_step (); in shorter ones while some cloth is
+ * stretched by more than a fifth and the step is an automatic one. A model
  * that diverges is put back to where it was at the start of this call and stays there.
  */
 void
@@ -419,7 +451,8 @@ cloth_sim_advance (ClothSim * sim, gdouble until_s)
   sim->until = until_s;
   /* a step too many for a rounding error would be a waste */
   sim->n_steps =
-      (guint) CLAMP (ceil (span / sim->time_step - 1e-9), 1., MAX_STEPS);
+      (guint) CLAMP (ceil (span / find_strained_step (sim,
+              &sim->n_stages) - 1e-9), 1., MAX_STEPS);
   cloth_pool_run_one_by_one (sim->pool, advance_groups, sim, sim->n_groups);
   sim->time = until_s;
 }

@@ -256,6 +256,7 @@ group_free (gpointer group)
   g_aligned_free (state->held_x);
   g_free (state->held);
   g_free (state->held_since);
+  g_free (state->fixed);
   g_free (state->triangles);
   g_free (state->hinges);
   g_free (state->bends);
@@ -298,6 +299,7 @@ group_new (const ClothBody * body, const ClothModel * const *models,
   state->inverse_mass = lanes_new (n, sizeof *state->mass);
   state->held = g_new0 (gboolean, body->n_held + 1);
   state->held_since = g_new0 (gdouble, body->n_held + 1);
+  state->fixed = g_new0 (guint8, n);
   state->held_offset = lanes_new (body->n_held, sizeof *state->held_offset);
   state->held_x = lanes_new (body->n_held, sizeof *state->held_x);
   load_rest (state, body);
@@ -325,12 +327,29 @@ group_new (const ClothBody * body, const ClothModel * const *models,
   return state;
 }
 
+static void
+group_strain (gpointer group)
+{
+  CLOTH_LANE_NAME (cloth_lane_strained) (group);
+}
+
 static gdouble
-group_time_step (gpointer group)
+group_time_step (gpointer group, guint stages, gdouble longest,
+    gboolean strained)
 {
   ClothLaneState *state = group;
-  ClothLane each = CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (state);
-  gdouble least = state->implicit ? state->body->frame_s : INFINITY;
+  const ClothLaneBounds rest = { state->own_omega2, cloth_lane_set (0.),
+    CLOTH_LANE_MARGIN
+  };
+  const ClothLaneBounds *bounds = strained ? &state->strained : &rest;
+  ClothLane each;
+  gdouble least = state->implicit ? MIN (longest, state->body->frame_s) :
+      longest;
+
+  if (stages > 1)
+    return CLOTH_LANE_NAME (cloth_lane_staged_time_step) (state, bounds,
+        stages, longest);
+  each = CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (state, bounds);
 
   for (guint l = 0; l < CLOTH_N_LANES; l++)
     least = MIN (least, (gdouble) CLOTH_LANE_AT (&each, l));
@@ -400,12 +419,6 @@ group_take_step (gpointer group, gdouble until_s)
   state->steps_left = 0;
   finish_step (state, until_s);
   check_sound (state, start);
-}
-
-static gdouble
-group_staged_time_step (gpointer group, guint stages, gdouble longest)
-{
-  return CLOTH_LANE_NAME (cloth_lane_staged_time_step) (group, stages, longest);
 }
 
 static void
@@ -775,8 +788,8 @@ cost (const ClothEffect * effect)
 extern const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend);
 
 const ClothLaneBackend CLOTH_LANE_NAME (cloth_lane_backend) = {
-  CLOTH_N_LANES, cost, group_new, group_free, group_time_step,
-  group_staged_time_step, group_advance,
+  CLOTH_N_LANES, cost, group_new, group_free, group_strain, group_time_step,
+  group_advance,
   group_try_step, group_take_step,
   group_get, group_lag, group_set, group_set_time, group_set_targets,
   group_set_pulls,

@@ -29,10 +29,12 @@ typedef struct
   gpointer (*group_new) (const ClothBody * body,
       const ClothModel * const *models, guint n_models, guint64 seed);
   void (*group_free) (gpointer group);
-  /* the largest stable step of any lane, with its margin */
-  gdouble (*time_step) (gpointer group);
-  /* the same, at most @longest, of explicit steps in several stages */
-  gdouble (*staged_time_step) (gpointer group, guint stages, gdouble longest);
+  /* finds out how stiff the cloth is as it is stretched now */
+  void (*strain) (gpointer group);
+  /* the largest step, at most @longest, of so many stages that is stable in all lanes, with its margin: of the cloth at
+   * rest, or @strained as it was found to be */
+  gdouble (*time_step) (gpointer group, guint stages, gdouble longest,
+      gboolean strained);
   /* the whole group to a time in so many equal steps, each of so many stages */
   void (*advance) (gpointer group, gdouble until_s, guint n_steps,
       guint stages);

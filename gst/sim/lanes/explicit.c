@@ -9,10 +9,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/motion.h"
 
-/* Share of the bound that is used: stretched St. Venant–Kirchhoff cloth is stiffer than
- * at rest, (3 λ² − 1)/2 times at stretch λ; this is stable up to λ = 1.3. */
-#define MARGIN 0.7
-
 /* The cloth's own forces at x and v, into f. */
 void CLOTH_LANE_NAME (cloth_lane_own_forces) (ClothLaneState * state)
 {
@@ -116,16 +112,19 @@ ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness) (const ClothLaneState * state)
 /* The largest stable step of each lane. A mode of frequency ω damped by c (1/s) is stable
  * when h²ω² + 2hc < 4 (Jury's criterion on its two-by-two map). */
 ClothLane
-CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (const ClothLaneState * state)
+CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (const ClothLaneState * state,
+    const ClothLaneBounds * bounds)
 {
   ClothLane four = cloth_lane_set (4.), least = cloth_lane_set (1e-6);
   /* even when nothing is stiff there is a step */
   const ClothLanePulls *pulls = &state->pulls;
+  ClothLane more = bounds->own - state->own_omega2;
   ClothLane omega2 = state->omega2 + state->targets.gain +
-      pulls->gain * pulls->bound;
+      pulls->gain * pulls->bound + more + bounds->pulled;
   /* velocities that change their sign in each step are ahead twice as large */
-  ClothLane friction = state->friction + cloth_lane_set (2.) *
-      (state->targets.damping + pulls->damping * pulls->bound);
+  ClothLane friction = state->friction + state->beta * more +
+      cloth_lane_set (2.) * (state->targets.damping +
+      pulls->damping * pulls->bound);
   ClothLane stiff;
 
   /* of an implicit step effects alone are explicit */
@@ -135,6 +134,6 @@ CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (const ClothLaneState * state)
   }
   stiff = cloth_lane_max (omega2, least);
 
-  return four * cloth_lane_set (MARGIN) / (friction +
+  return four * cloth_lane_set (bounds->margin) / (friction +
       cloth_lane_sqrt (friction * friction + four * stiff));
 }

@@ -7,9 +7,6 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/motion.h"
 
-/* Shares of the bounds that are used, as in explicit.c: of the frequency, and of
- * the damping. */
-#define MARGIN 0.7
 /* Modes are looked at in so many steps of stiffness. */
 #define N_MODES 64
 /* At −1 odd polynomials are −1: neither damped nor stable beyond. */
@@ -109,11 +106,12 @@ legendre (guint n, gdouble x)
   return now;
 }
 
-/* Whether all modes of ω² up to @omega2, damped by @beta ω² in stages and by @c besides,
- * are stable: Jury's criterion on v ← R v − h φ ω² x, x ← x + h v, where R is what the
+/* Whether all modes of ω² up to @omega2, damped by @beta ω² in stages and by @c besides, with @pulled 1/s² more that
+ * no stage damps, are stable: Jury's criterion on v ← R v − h φ ω² x, x ← x + h v, where R is what the
  * stages leave of v and φ what they let through of a force. */
 static gboolean
-is_stable (guint stages, gdouble h, gdouble omega2, gdouble beta, gdouble c)
+is_stable (guint stages, gdouble h, gdouble omega2, gdouble beta,
+    gdouble pulled, gdouble c)
 {
   for (guint i = 1; i <= N_MODES; i++) {
     gdouble square = omega2 * i / N_MODES, z = h * beta * square;
@@ -121,7 +119,7 @@ is_stable (guint stages, gdouble h, gdouble omega2, gdouble beta, gdouble c)
     gdouble r = legendre (stages, x), phi = z > 1e-9 ? (1. - r) / z : 1.;
 
     if (x < LEAST_ARGUMENT
-        || !(phi * (h * h * square + 2. * h * c) < 2. * (1. + r)))
+        || !(phi * (h * h * (square + pulled) + 2. * h * c) < 2. * (1. + r)))
       return FALSE;
   }
   return TRUE;
@@ -130,24 +128,28 @@ is_stable (guint stages, gdouble h, gdouble omega2, gdouble beta, gdouble c)
 /* The largest step, at most @longest, that is stable with so many stages in all lanes. */
 gdouble
 CLOTH_LANE_NAME (cloth_lane_staged_time_step) (const ClothLaneState * state,
-    guint stages, gdouble longest)
+    const ClothLaneBounds * bounds, guint stages, gdouble longest)
 {
+  const gdouble margin = bounds->margin;
   ClothLane pulled = state->pulls.gain * state->pulls.bound;
   ClothLane dragged = state->pulls.damping * state->pulls.bound;
 
   for (guint l = 0; l < CLOTH_N_LANES; l++) {
-    gdouble own = CLOTH_LANE_AT (&state->own_omega2, l);
-    gdouble damped = CLOTH_LANE_AT (&state->beta, l) * own;
-    gdouble omega2 = CLOTH_LANE_AT (&state->omega2, l) +
+    const gdouble own = CLOTH_LANE_AT (&state->own_omega2, l);
+    const gdouble more = CLOTH_LANE_AT (&bounds->own, l) - own;
+    const gdouble damped = CLOTH_LANE_AT (&state->beta, l) * (own + more);
+    const gdouble tension = CLOTH_LANE_AT (&bounds->pulled, l);
+    gdouble omega2 = CLOTH_LANE_AT (&state->omega2, l) + more +
         CLOTH_LANE_AT (&state->targets.gain, l) + CLOTH_LANE_AT (&pulled, l);
     /* velocities that change their sign in each step are ahead twice as large */
     gdouble c = CLOTH_LANE_AT (&state->friction, l) +
         2. * CLOTH_LANE_AT (&state->targets.damping, l) +
-        2. * CLOTH_LANE_AT (&dragged, l) - damped;
+        2. * CLOTH_LANE_AT (&dragged, l) -
+        CLOTH_LANE_AT (&state->beta, l) * own;
 
     while (longest > LEAST_STEP
-        && !is_stable (stages, longest, omega2 / (MARGIN * MARGIN),
-            damped / omega2, c / MARGIN))
+        && !is_stable (stages, longest, omega2 / (margin * margin),
+            damped / omega2, tension / (margin * margin), c / margin))
       longest *= SHORTER;
   }
   return longest;

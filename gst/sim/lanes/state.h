@@ -103,6 +103,20 @@ typedef struct
   ClothReal warp, weft;
 } ClothLaneBend;
 
+/* Shares of a bound that are used: of the cloth at rest, so that what is stretched less than 1.2 times needs no other step
+ * ((3 λ² − 1)/2 is the stiffness at stretch λ in St. Venant and Kirchhoff's law); and of what is looked at as it is stretched,
+ * so that it may be stretched further before it is looked at again. */
+#define CLOTH_LANE_MARGIN 0.7
+#define CLOTH_LANE_MARGIN_STRAINED 0.9
+
+/* What bounds a step: of the cloth itself stiffness over mass, which is damped by β times as much, and that of
+ * tensions, which nothing damps, 1/s²; the share that is used. */
+typedef struct
+{
+  ClothLane own, pulled;
+  gdouble margin;
+} ClothLaneBounds;
+
 typedef struct
 {
   const ClothBody *body;
@@ -141,6 +155,7 @@ typedef struct
   ClothLane rest_area;          /* over the area in uv */
   ClothLane omega2, friction;   /* bounds: stiffness/mass and damping/mass */
   ClothLane own_omega2, own_friction;   /* without effects */
+  ClothLaneBounds strained;     /* by cloth_lane_strained () */
 
   guint n_effects;
   ClothLaneEffect *effects;
@@ -156,6 +171,7 @@ typedef struct
   gdouble *held_since;
   ClothLane3 *held_offset;
   ClothLane3 *held_x;
+  guint8 *fixed;                /* of each particle, filled by cloth_lane_strained () */
   /* of each lane, [frame][held][3]: where the clamps go instead; NULL: where the scene says */
   gdouble *paths[CLOTH_N_LANES];
 
@@ -291,8 +307,10 @@ void CLOTH_LANE_NAME (cloth_lane_inertia) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_forces) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_explicit) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_staged) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_strained) (ClothLaneState * state);
 gdouble CLOTH_LANE_NAME (cloth_lane_staged_time_step) (const
-    ClothLaneState * state, guint stages, gdouble longest);
+    ClothLaneState * state, const ClothLaneBounds * bounds, guint stages,
+    gdouble longest);
 ClothLaneImplicit *CLOTH_LANE_NAME (cloth_lane_implicit_new) (const
     ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_implicit_free) (ClothLaneImplicit * implicit);
@@ -302,7 +320,7 @@ gdouble CLOTH_LANE_NAME (cloth_lane_implicit_solve) (ClothLaneState * state);
 void CLOTH_LANE_NAME (cloth_lane_implicit_take) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness) (const ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (const
-    ClothLaneState * state);
+    ClothLaneState * state, const ClothLaneBounds * bounds);
 
 /* One triangle in the air: its normal times its area, its area, the mean velocity. */
 CLOTH_LANE_INLINE void
