@@ -9,6 +9,7 @@
 #include "gst/math/band.h"
 
 #include <math.h>
+#include <string.h>
 
 /* What is left of a pivot that is nothing but rounding, of its diagonal. */
 #define PIVOT_FLOOR 1e-11
@@ -83,35 +84,65 @@ cloth_band_solve (guint n, guint bandwidth, const gdouble * l, guint columns,
   }
 }
 
+/* Adds the products of rows of @window with numbers of @l to @sums, four rows at a time: in the order of the rows. */
+static void
+add_rows (const gdouble * window, guint width, const guint * slots,
+    const gdouble * l, guint n, gdouble * sums)
+{
+  guint k = 0;
+
+  for (; k + 4 <= n; k += 4) {
+    const gdouble *a = window + (gsize) slots[k] * width;
+    const gdouble *b = window + (gsize) slots[k + 1] * width;
+    const gdouble *c = window + (gsize) slots[k + 2] * width;
+    const gdouble *d = window + (gsize) slots[k + 3] * width;
+
+    for (guint i = 0; i < width; i++)
+      sums[i] = (((sums[i] + l[k] * a[i]) + l[k + 1] * b[i]) +
+          l[k + 2] * c[i]) + l[k + 3] * d[i];
+  }
+  for (; k < n; k++)
+    for (guint i = 0; i < width; i++)
+      sums[i] += l[k] * window[(gsize) slots[k] * width + i];
+}
+
 /* @n: order
  * @bandwidth: bandwidth
  * @l: factor made by cloth_band_factor ()
- * @work: (array): n·(bandwidth + 1) numbers to work in
  * @diagonal: (out) (array): the n elements of the diagonal of the inverse
  *
  * From the elements of the inverse within the band alone (K. Takahashi, J. Fagan, M.-S.
- * Chin, “Formation of a sparse bus impedance matrix”, 1973).
+ * Chin, “Formation of a sparse bus impedance matrix”, 1973). Of these a column needs those of the @bandwidth
+ * columns behind it: a full square, in which row i is at i modulo bandwidth + 1.
  */
 void
 cloth_band_inverse_diagonal (guint n, guint bandwidth, const gdouble * l,
-    gdouble * work, gdouble * diagonal)
+    gdouble * diagonal)
 {
-  for (guint j = n; j-- > 0;) {
-    guint last = MIN (j + bandwidth, n - 1);
-    gdouble pivot = CLOTH_BAND (l, bandwidth, j, j), sum;
+  const guint width = bandwidth + 1;
+  g_autofree gdouble *window = g_new0 (gdouble, (gsize) width * width);
+  g_autofree gdouble *sums = g_new (gdouble, width);
+  g_autofree gdouble *column = g_new (gdouble, width);
+  g_autofree guint *slots = g_new (guint, width);
 
-    for (guint i = j + 1; i <= last; i++) {
-      sum = 0;
-      for (guint k = j + 1; k <= last; k++)
-        sum += CLOTH_BAND (l, bandwidth, k, j)
-            * (k > i ? CLOTH_BAND (work, bandwidth, k, i)
-            : CLOTH_BAND (work, bandwidth, i, k));
-      CLOTH_BAND (work, bandwidth, i, j) = -sum / pivot;
+  for (guint j = n; j-- > 0;) {
+    const guint last = MIN (j + bandwidth, n - 1), own = j % width;
+    const gdouble pivot = CLOTH_BAND (l, bandwidth, j, j);
+    gdouble sum = 1 / pivot;
+
+    for (guint k = j + 1; k <= last; k++) {
+      slots[k - j - 1] = k % width;
+      column[k - j - 1] = CLOTH_BAND (l, bandwidth, k, j);
     }
-    sum = 1 / pivot;
-    for (guint k = j + 1; k <= last; k++)
-      sum -= CLOTH_BAND (l, bandwidth, k, j)
-          * CLOTH_BAND (work, bandwidth, k, j);
-    diagonal[j] = CLOTH_BAND (work, bandwidth, j, j) = sum / pivot;
+    memset (sums, 0, width * sizeof *sums);
+    add_rows (window, width, slots, column, last - j, sums);
+    for (guint k = 0; k < last - j; k++) {
+      const gdouble z = -sums[slots[k]] / pivot;
+
+      window[(gsize) own * width + slots[k]] = z;
+      window[(gsize) slots[k] * width + own] = z;
+      sum -= column[k] * z;
+    }
+    diagonal[j] = window[(gsize) own * width + own] = sum / pivot;
   }
 }

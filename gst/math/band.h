@@ -22,6 +22,6 @@ gboolean cloth_band_factor (guint n, guint bandwidth, gdouble * a);
 void cloth_band_solve (guint n, guint bandwidth, const gdouble * l,
     guint columns, gdouble * b);
 void cloth_band_inverse_diagonal (guint n, guint bandwidth,
-    const gdouble * l, gdouble * work, gdouble * diagonal);
+    const gdouble * l, gdouble * diagonal);
 
 G_END_DECLS

@@ -560,10 +560,9 @@ find_deviations (Paths * p, gdouble * sd)
 {
   const guint each = unknowns_of_knot (p), all = n_unknowns (p);
   const guint n_held = p->r->scene->held->len;
-  g_autofree gdouble *work = g_new (gdouble, n_band (p));
   g_autofree gdouble *variances = g_new (gdouble, all);
 
-  cloth_band_inverse_diagonal (all, bandwidth (p), p->normal, work, variances);
+  cloth_band_inverse_diagonal (all, bandwidth (p), p->normal, variances);
   for (guint f = 0; f < p->r->n_frames; f++)
     for (guint path = 0; path < p->n_paths; path++) {
       const gsize at = (gsize) f * n_held + p->paths[path];

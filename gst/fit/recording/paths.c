@@ -248,7 +248,6 @@ find_path (Path * p, guint held, GError ** error)
   const guint order = 3 * p->n, n_held = scene->held->len;
   gdouble best = NAN, most = -INFINITY;
   guint n_told;
-  g_autofree gdouble *work = NULL;
   g_autofree gdouble *variances = NULL;
 
   n_told = find_data (p, held);
@@ -268,9 +267,8 @@ find_path (Path * p, guint held, GError ** error)
         g_array_index (scene->held, ClothHeld, held).vertex, n_told);
     return FALSE;
   }
-  work = g_new (gdouble, (gsize) order * (BANDWIDTH + 1));
   variances = g_new (gdouble, order);
-  cloth_band_inverse_diagonal (order, BANDWIDTH, p->factor, work, variances);
+  cloth_band_inverse_diagonal (order, BANDWIDTH, p->factor, variances);
   for (guint f = 0; f < p->n; f++) {
     const gsize k = (gsize) f * n_held + held;
     const gdouble *v = variances + 3 * (gsize) f;

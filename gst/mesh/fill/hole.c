@@ -228,12 +228,9 @@ cloth_hole_new (const ClothStencils * stencils, guint n, const guint * found,
   collect (self, stencils, index);
   self->anchored = self->n_ring >= 3 && factor (self);
   if (self->anchored) {
-    gdouble *work = g_new0 (gdouble, (gsize) n * (self->bandwidth + 1));
-
     self->variance = g_new (gdouble, n);
-    cloth_band_inverse_diagonal (n, self->bandwidth, self->factor, work,
+    cloth_band_inverse_diagonal (n, self->bandwidth, self->factor,
         self->variance);
-    g_free (work);
     find_leverage (self);
   } else {
     g_clear_pointer (&self->factor, g_free);

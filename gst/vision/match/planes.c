@@ -13,6 +13,8 @@
 #define LEAST 8
 /* A blur ends so many standard deviations away. */
 #define REACH 4.0
+/* Of the greatest blur and step of the levels: 2 (4 √512 + 16) + 2. */
+#define MOST_TAPS 216
 /* Pole of the filter that makes coefficients, and after how many samples it has faded. */
 #define POLE -0.26794919243112270647
 #define FADES 24
@@ -33,22 +35,26 @@ blur_line (const gfloat * from, gint n, gint from_step, gint step,
     gdouble variance, gint n_to, gfloat * to, gint to_step)
 {
   const gint reach = (gint) ceil (REACH * sqrt (variance) + 0.5 * step);
+  gdouble weights[MOST_TAPS], sum_weights = 0;
+  const gdouble first = (-CLOTH_PLANE_PAD + 0.5) * step - 0.5;
+  /* middles are whole steps apart, so that each has the same weights */
+  const gint begin = (gint) floor (first) - reach;
+  const gint n_taps = (gint) ceil (first) + reach + 1 - begin;
 
+  for (gint t = 0; variance > 0 && t < n_taps; t++) {
+    const gdouble off = begin + t - first;
+
+    weights[t] = exp (-0.5 * off * off / variance);
+    sum_weights += weights[t];
+  }
   for (gint i = 0; i < n_to; i++) {
-    const gdouble centre = (i - CLOTH_PLANE_PAD + 0.5) * step - 0.5;
-    gdouble sum = 0, weights = 0;
+    const gint at = begin + i * step;
+    gdouble sum = 0;
 
-    if (variance > 0)
-      for (gint k = (gint) floor (centre) - reach;
-          k <= (gint) ceil (centre) + reach; k++) {
-        const gdouble weight = exp (-0.5 * (k - centre) * (k - centre)
-            / variance);
-
-        sum += weight * from[(gssize) CLAMP (k, 0, n - 1) * from_step];
-        weights += weight;
-      }
-    to[(gssize) i * to_step] = (gfloat) (variance > 0 ? sum / weights
-        : from[(gssize) CLAMP ((gint) centre, 0, n - 1) * from_step]);
+    for (gint t = 0; variance > 0 && t < n_taps; t++)
+      sum += weights[t] * from[(gssize) CLAMP (at + t, 0, n - 1) * from_step];
+    to[(gssize) i * to_step] = (gfloat) (variance > 0 ? sum / sum_weights :
+        from[(gssize) CLAMP (at + reach, 0, n - 1) * from_step]);
   }
 }
 

@@ -269,57 +269,117 @@ distance (const guint8 * a, const guint8 * b)
   return (guint32) sum;
 }
 
-/* How far from itself a feature of @picture gets under noise: the quantile %AGAIN_SHARE of
- * those that are found again, squared; 0 when none is. */
-static gboolean
-measure_noise (const ClothReference * self, ClothCvSift * sift,
-    const ClothCvPicture * picture, gdouble noise, guint32 * far,
-    GError ** error)
+/* What is looked at: the picture under noise first, then the views of each side. */
+typedef struct
+{
+  const ClothReferenceParams *params;
+  ClothCvPicture noisy, flat[2];        /* of each side */
+  guint n_views;                /* of a side */
+  GArray *items[2 * CLOTH_REFERENCE_VIEWS + 1];
+  GError *errors[2 * CLOTH_REFERENCE_VIEWS + 1];
+} Looks;
+
+static void
+looks_clear (Looks * looks)
+{
+  for (guint i = 0; i < G_N_ELEMENTS (looks->items); i++) {
+    g_clear_pointer (&looks->items[i], g_array_unref);
+    g_clear_error (&looks->errors[i]);
+  }
+  g_free ((gpointer) looks->noisy.data);
+  g_free ((gpointer) looks->flat[0].data);
+  g_free ((gpointer) looks->flat[1].data);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Looks, looks_clear);
+
+static void
+looks_init (Looks * looks, const ClothReferenceParams * params,
+    const ClothCvPicture * picture)
 {
   const gint width = picture->width, height = picture->height;
-  g_autofree guint8 *noisy = g_malloc ((gsize) width * height);
-  g_autoptr (GArray) distances = g_array_new (FALSE, FALSE, sizeof (guint32));
-  const ClothCvPicture view = { noisy, width, height, width };
-  ClothCvFeatures found;
+  guint8 *data[3];
   ClothRandom random;
 
-  *far = 0;
+  looks->params = params;
+  looks->n_views = 4 * (guint) params->oblique + 1;
+  for (guint i = 0; i < G_N_ELEMENTS (data); i++)
+    data[i] = g_malloc ((gsize) width * height);
   cloth_random_init (&random, 1);
   for (gint y = 0; y < height; y++)
     for (gint x = 0; x < width; x++) {
-      const gdouble value = picture->data[(gsize) y * picture->stride + x]
-          + noise * cloth_random_gaussian (&random);
+      const guint8 *row = picture->data + (gsize) y * picture->stride;
+      const gdouble value = row[x] +
+          params->noise * cloth_random_gaussian (&random);
 
-      noisy[y * width + x] = (guint8) lrint (CLAMP (value, 0, 255));
+      data[0][y * width + x] = row[x];
+      data[1][y * width + x] = row[width - 1 - x];
+      data[2][y * width + x] = (guint8) lrint (CLAMP (value, 0, 255));
     }
-  if (!cloth_cv_sift_run (sift, &view, NULL, &found, error))
-    return FALSE;
-  for (guint i = 0; i < found.n; i++) {
-    const gint row = cloth_reference_bin (found.y[i], self->rows);
-    const gint column = cloth_reference_bin (found.x[i], self->columns);
+  looks->flat[0] = (ClothCvPicture) {
+  data[0], width, height, width};
+  looks->flat[1] = (ClothCvPicture) {
+  data[1], width, height, width};
+  looks->noisy = (ClothCvPicture) {
+  data[2], width, height, width};
+}
+
+static void
+look (gpointer data, guint begin, guint end, guint worker)
+{
+  Looks *looks = data;
+  const ClothReferenceParams *params = looks->params;
+
+  for (guint i = begin; i < end; i++) {
+    g_autoptr (ClothCvSift) sift = cloth_cv_sift_new (&params->sift,
+        &looks->errors[i]);
+    const guint side = i ? (i - 1) / looks->n_views : 0;
+
+    looks->items[i] = g_array_new (FALSE, FALSE, sizeof (Item));
+    if (!sift)
+      continue;
+    if (i == 0)
+      add_view (looks->items[i], sift, &looks->noisy, 0, 0, 0.,
+          &looks->errors[i]);
+    else
+      add_view (looks->items[i], sift, &looks->flat[side],
+          (i - 1) % looks->n_views, side, params->least_scale,
+          &looks->errors[i]);
+  }
+}
+
+/* How far from itself a feature gets under noise: the quantile %AGAIN_SHARE of those that are
+ * found again, squared; 0 when none is. */
+static guint32
+measure_noise (const ClothReference * self, const GArray * noisy)
+{
+  g_autoptr (GArray) distances = g_array_new (FALSE, FALSE, sizeof (guint32));
+
+  for (guint i = 0; i < noisy->len; i++) {
+    const Item *found = &g_array_index (noisy, Item, i);
+    const gint row = cloth_reference_bin (found->y, self->rows);
+    const gint column = cloth_reference_bin (found->x, self->columns);
     const guint *start = self->starts + row * self->columns + column;
     guint32 least = G_MAXUINT32;
 
     for (guint k = start[0]; k < start[1]; k++)
-      if (self->view[k] == 0 && fabsf (self->x[k] - found.x[i]) < AGAIN_PX
-          && fabsf (self->y[k] - found.y[i]) < AGAIN_PX
-          && fabsf (self->scale[k] / found.scale[i] - 1) < AGAIN_SCALE
-          && cos (self->angle[k] - found.angle[i]) > cos (AGAIN_ANGLE))
+      if (self->view[k] == 0 && fabsf (self->x[k] - found->x) < AGAIN_PX
+          && fabsf (self->y[k] - found->y) < AGAIN_PX
+          && fabsf (self->scale[k] / found->scale - 1) < AGAIN_SCALE
+          && cos (self->angle[k] - found->angle) > cos (AGAIN_ANGLE))
         least = MIN (least, distance (self->descriptors + (gsize) k * BYTES,
-                found.descriptors + (gsize) i * BYTES));
+                found->bytes));
     if (least < G_MAXUINT32)
       g_array_append_val (distances, least);
   }
   g_array_sort (distances, compare_distances);
-  if (distances->len)
-    *far = g_array_index (distances, guint32,
-        (guint) (AGAIN_SHARE * (distances->len - 1)));
-  return TRUE;
+  return distances->len ? g_array_index (distances, guint32,
+      (guint) (AGAIN_SHARE * (distances->len - 1))) : 0;
 }
 
 /* @params: what is looked for
  * @picture: the flat picture; its edges are those of the cloth's size
- * @pool: (nullable): threads for the comparison of features
+ * @pool: (nullable): threads that look at views, and compare features
  * @error: (out): set when there is no size, a parameter is out of range, the picture can't
  *   be or has no feature
  *
@@ -329,16 +389,12 @@ ClothReference *
 cloth_reference_new (const ClothReferenceParams * params,
     const ClothCvPicture * picture, ClothPool * pool, GError ** error)
 {
-  g_autoptr (ClothCvSift) sift = cloth_cv_sift_new (&params->sift, error);
-  g_autoptr (GArray) items = g_array_new (FALSE, FALSE, sizeof (Item));
   g_autoptr (ClothReference) self = NULL;
-  g_autofree guint8 *flat = NULL;
+  g_auto (Looks) looks = { NULL };
   const gint width = picture->width, height = picture->height;
-  ClothCvPicture view = { NULL, width, height, width };
-  guint32 far;
+  GArray *items;
+  guint n;
 
-  if (!sift)
-    return NULL;
   if (params->sides < 1 || params->sides > 2 || params->oblique < 0
       || params->oblique > 2 || !(params->noise >= 0 && params->noise <= 64)) {
     g_set_error (error, CLOTH_CV_ERROR, CLOTH_CV_ERROR_PARAMETER,
@@ -354,16 +410,17 @@ cloth_reference_new (const ClothReferenceParams * params,
   }
   if (!check_size (width, height, params->cloth_m, error))
     return NULL;
-  view.data = flat = g_malloc ((gsize) width * height);
-  for (gint side = 0; side < params->sides; side++) {
-    for (gint y = 0; y < height; y++)
-      for (gint x = 0; x < width; x++)
-        flat[y * width + x] = picture->data[(gsize) y * picture->stride
-            + (side ? width - 1 - x : x)];
-    for (gint v = 0; v <= 4 * params->oblique; v++)
-      if (!add_view (items, sift, &view, v, side, params->least_scale, error))
-        return NULL;
-  }
+  looks_init (&looks, params, picture);
+  n = (guint) params->sides * looks.n_views + 1;
+  cloth_pool_run_one_by_one (pool, look, &looks, n);
+  for (guint i = 0; i < n; i++)
+    if (looks.errors[i]) {
+      g_propagate_error (error, g_steal_pointer (&looks.errors[i]));
+      return NULL;
+    }
+  items = looks.items[1];
+  for (guint i = 2; i < n; i++)
+    g_array_append_vals (items, looks.items[i]->data, looks.items[i]->len);
   if (!items->len) {
     g_set_error (error, CLOTH_CV_ERROR, CLOTH_CV_ERROR_PICTURE,
         "the reference has no feature: it needs a print with edges");
@@ -371,9 +428,8 @@ cloth_reference_new (const ClothReferenceParams * params,
   }
   self = build (&g_array_index (items, Item, 0), items->len, width, height,
       params->cloth_m, params->seed_scale);
-  if (!measure_noise (self, sift, picture, params->noise, &far, error))
-    return NULL;
-  self->repeated = cloth_reference_find_repeated (self, far, pool);
+  self->repeated = cloth_reference_find_repeated (self,
+      measure_noise (self, looks.items[0]), pool);
   return g_steal_pointer (&self);
 }
 
