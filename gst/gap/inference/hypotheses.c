@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/math/pool.h"
 #include "gst/math/statistics.h"
 
 /* Sets of two and of three effects that are simulated. */
@@ -359,12 +360,33 @@ add_one (const ClothDiagnosis * d, const ClothGapStack * stack,
   return cloth_gap_hypothesis_init (h, d->candidates, stack, list, n);
 }
 
+typedef struct
+{
+  const ClothDiagnosis *d;
+  const ClothGapLinearisation *l;
+  GArray *hypotheses;
+  gboolean *finite;             /* which ones could be screened */
+} Screening;
+
+static void
+screen_some (gpointer data, guint begin, guint end, guint worker)
+{
+  const Screening *s = data;
+
+  for (guint i = begin; i < end; i++)
+    s->finite[i] = screen (s->d, s->l, &g_array_index (s->hypotheses,
+            ClothGapHypothesis, i));
+}
+
 /* What @sets become by one more effect, the likeliest first. */
 static GArray *
 grow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     const GArray * sets)
 {
+  g_autoptr (ClothPool) pool = cloth_pool_new (d->options->threads);
+  g_autoptr (GArray) all = cloth_gap_hypotheses_new ();
   GArray *grown = cloth_gap_hypotheses_new ();
+  Screening screening = { d, l, all };
 
   for (guint i = 0; i < sets->len; i++) {
     const ClothGapHypothesis *set = &g_array_index (sets, ClothGapHypothesis,
@@ -374,11 +396,17 @@ grow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
       ClothGapHypothesis h;
 
       if (!cloth_gap_hypothesis_has (set, one)
-          && add_one (d, l->stack, set, one, &h) && !find_same (grown, &h)
-          && screen (d, l, &h))
-        g_array_append_val (grown, h);
+          && add_one (d, l->stack, set, one, &h) && !find_same (all, &h))
+        g_array_append_val (all, h);
     }
   }
+  screening.finite = g_new0 (gboolean, all->len + 1);
+  cloth_pool_run_one_by_one (pool, screen_some, &screening, all->len);
+  for (guint i = 0; i < all->len; i++)
+    if (screening.finite[i])
+      g_array_append_vals (grown, &g_array_index (all, ClothGapHypothesis, i),
+          1);
+  g_free (screening.finite);
   g_array_sort (grown, compare_by_residual);
   return grown;
 }
