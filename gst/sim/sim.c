@@ -46,6 +46,7 @@ struct _ClothSim
   gdouble time;
   gdouble fixed_step;           /* of the models, 0 = automatic */
   gdouble time_step;
+  gdouble strained_step;        /* of the last advance, in equal steps */
   guint stages;                 /* of a step */
   gboolean stale;               /* the time step is to be found anew */
   gboolean implicit;
@@ -118,7 +119,6 @@ bound (const ClothSim * sim, guint stages, gdouble longest, gboolean strained)
   return longest;
 }
 
-
 /* The number of stages that reaches a given step, or the one that costs least; the
  * longest step that it allows. */
 static gdouble
@@ -160,6 +160,7 @@ find_time_step (ClothSim * sim)
   if (!sim->adaptive || sim->time_step == 0.
       || sim->time_step > sim->longest_step)
     sim->time_step = sim->longest_step;
+  sim->strained_step = INFINITY;
   sim->stale = FALSE;
 }
 
@@ -231,7 +232,8 @@ find_lighter (const ClothSim * sim)
  * Models are computed side by side in vector instructions and on several threads. What
  * becomes of a model does not depend on its neighbours, the threads or the instruction
  * set, to the last bit, but for the time step: an automatic one is the smallest that any
- * of the models needs, rounded down to an eighth of an octave, at rest or while it is stretched further.
+ * of the models needs, rounded down to an eighth of an octave, and a smaller one while any of them is stretched far, down to
+ * an eighth where one is about to burst.
  *
  * Models with the effects time_step, mesh_resolution or mesh_diagonals are simulated with
  * other steps or on another mesh; what goes in and comes out is about @scene's own
@@ -412,27 +414,30 @@ strain_groups (gpointer data, guint begin, guint end, guint worker)
 static gdouble
 find_strained_step (ClothSim * sim, guint * stages)
 {
+  /* the effect time_step shortens all steps alike */
+  const gdouble share = MIN (sim->numerics->step_factor, 1.);
   gdouble step;
 
   *stages = sim->stages;
+  sim->strained_step = sim->time_step;
   if (sim->fixed_step > 0.)
     return sim->time_step;
   cloth_pool_run_one_by_one (sim->pool, strain_groups, sim, sim->n_groups);
-  step = bound (sim, sim->stages, sim->time_step, TRUE);
-  if (step >= sim->time_step)
+  step = bound (sim, sim->stages, sim->time_step / share, TRUE);
+  if (step * share >= sim->time_step)
     return sim->time_step;
-  step = MAX (round_step (step), sim->time_step * LEAST_STRAINED);
+  step = MAX (round_step (step), sim->time_step / share * LEAST_STRAINED);
   for (guint s = 1; s < sim->stages && *stages == sim->stages; s++)
     if (bound (sim, s, step, TRUE) >= step)
       *stages = s;
-  return step;
+  return sim->strained_step = step * share;
 }
 
 /* @sim: a simulation
  * @until_s: where to stop, seconds; nothing happens when that is not ahead
  *
  * Moves all models on, in equal steps no longer than cloth_sim_get_time_step (); in shorter ones while some cloth is
- * stretched by more than a fifth and the step is an automatic one. A model
+ * stretched far, by a fifth or so, and the step is an automatic one. A model
  * that diverges is put back to where it was at the start of this call and stays there.
  */
 void
@@ -469,14 +474,14 @@ cloth_sim_get_time (const ClothSim * sim)
 
 /* @sim: a simulation
  *
- * Returns: the longest step that cloth_sim_advance () takes, seconds
+ * Returns: the longest step that cloth_sim_advance () takes, or took last if some cloth was stretched far, seconds
  */
 gdouble
 cloth_sim_get_time_step (ClothSim * sim)
 {
   if (sim->stale)
     find_time_step (sim);
-  return sim->time_step;
+  return MIN (sim->time_step, sim->strained_step);
 }
 
 static const ClothSimGroup *

@@ -385,7 +385,7 @@ test_cut_variants (gconstpointer single)
   }
 }
 
-/* Soft cloth held at two corners falls, and is stretched far beyond a third about them. Steps found at rest are too long
+/* Soft cloth held at two corners falls, and is stretched to twice its length about them. Steps found at rest are too long
  * then, above all where damping binds them, so that they have stages. What they make is held against steps so short that
  * nothing binds them. */
 static void
@@ -423,8 +423,8 @@ test_far_stretched (gconstpointer data)
       off = MAX (off, fabs (x[i] - y[i]));
   }
   g_test_message ("stretched %.2f times, %.3g mm off", most, 1e3 * off);
-  g_assert_cmpfloat (most, >, 1.4);
-  g_assert_cmpfloat (off, <, 1e-3);
+  g_assert_cmpfloat (most, >, 1.8);
+  g_assert_cmpfloat (off, <, 2e-4);
 }
 
 int

@@ -2,20 +2,7 @@
  * each with a damper; its bend springs are those of bending.c.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
-#include "gst/sim/lanes/state.h"
-
-/* What the effects' change of the rest shape does to the length of a spring. */
-CLOTH_LANE_INLINE ClothLane
-rest_length (const ClothLaneState * state, const ClothLaneSpring * s)
-{
-  const ClothLane *r = state->rest;
-  ClothLane det = r[0] * r[3] - r[1] * r[2];
-  ClothLane u = (r[3] * s->u - r[1] * s->v) / det;
-  ClothLane v = (r[0] * s->v - r[2] * s->u) / det;
-  ClothReal square = s->u * s->u + s->v * s->v;
-
-  return cloth_lane_sqrt ((u * u + v * v) / square) * s->length;
-}
+#include "gst/sim/lanes/strain.h"
 
 CLOTH_LANE_INLINE ClothLane
 spring_stiffness (const ClothLaneState * state, const ClothLaneSpring * s)
@@ -44,7 +31,8 @@ stretch_of (const ClothLaneState * state, const ClothLaneSpring * s,
   length = cloth_lane_sqrt (cloth_lane_dot (along, along));
   *inverse = cloth_lane_set (1.) /
       cloth_lane_max (length, cloth_lane_set (1e-12));
-  return rest_changed ? length - rest_length (state, s) : length - s->length;
+  return rest_changed ? length - cloth_lane_rest_length (state,
+      s) : length - s->length;
 }
 
 CLOTH_LANE_INLINE void

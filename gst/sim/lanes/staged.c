@@ -113,7 +113,8 @@ static gboolean
 is_stable (guint stages, gdouble h, gdouble omega2, gdouble beta,
     gdouble pulled, gdouble c)
 {
-  for (guint i = 1; i <= N_MODES; i++) {
+  /* tensions act on modes that nothing else holds, too */
+  for (guint i = pulled > 0. ? 0 : 1; i <= N_MODES; i++) {
     gdouble square = omega2 * i / N_MODES, z = h * beta * square;
     gdouble x = 1. - 2. * z / (stages * (stages + 1.));
     gdouble r = legendre (stages, x), phi = z > 1e-9 ? (1. - r) / z : 1.;
@@ -149,7 +150,8 @@ CLOTH_LANE_NAME (cloth_lane_staged_time_step) (const ClothLaneState * state,
 
     while (longest > LEAST_STEP
         && !is_stable (stages, longest, omega2 / (margin * margin),
-            damped / omega2, tension / (margin * margin), c / margin))
+            omega2 > 0. ? damped / omega2 : 0., tension / (margin * margin),
+            c / margin))
       longest *= SHORTER;
   }
   return longest;

@@ -1,4 +1,4 @@
-/* Strains of triangles from products of their edges, and the forces of stresses.
+/* Strains of triangles from products of their edges, and the forces of stresses; springs at rest.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -125,4 +125,17 @@ cloth_lane_pull (ClothLaneState * state, const ClothLaneTriangle * t,
   };
 
   cloth_lane_push_edges (state, t, &strain->edges, FALSE, TRUE, s);
+}
+
+/* What the effects' change of the rest shape does to the length of a spring. */
+CLOTH_LANE_INLINE ClothLane
+cloth_lane_rest_length (const ClothLaneState * state, const ClothLaneSpring * s)
+{
+  const ClothLane *r = state->rest;
+  ClothLane det = r[0] * r[3] - r[1] * r[2];
+  ClothLane u = (r[3] * s->u - r[1] * s->v) / det;
+  ClothLane v = (r[0] * s->v - r[2] * s->u) / det;
+  ClothReal square = s->u * s->u + s->v * s->v;
+
+  return cloth_lane_sqrt ((u * u + v * v) / square) * s->length;
 }

@@ -6,7 +6,8 @@
  *        + area (S_uu u_a u_b + S_vv v_a v_b + S_uv (u_a v_b + v_a u_b)) 1.
  * The first line grows with |x_u|² and |x_v|² and is damped by β times as much. The second, of tensions, is not damped at
  * all: across a pulled thread lengths don't change. Compression is left out, as it hastens buckling and no more.
- * Gershgorin's rows bound both; what a clamp holds doesn't move, so it has neither row nor column. Springs: k n nᵀ, and k (1 − L/l) in all directions.
+ * Where x_u and x_v, at the angle θ, are not
+ * perpendicular the terms of warp and weft add up to (1 + |cos θ|) times the larger at most. Gershgorin's rows bound both; what a clamp holds doesn't move, so it has neither row nor column. Springs: k n nᵀ, and k (1 − L/l) in all directions.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/strain.h"
@@ -32,13 +33,15 @@ add_triangle (const ClothLaneState * state, guint triangle, ClothLane3 * rows)
   const gdouble u[3] = { -t->g[0] - t->g[2], t->g[0], t->g[2] };
   const gdouble v[3] = { -t->g[1] - t->g[3], t->g[1], t->g[3] };
   gdouble sum_u = 0., sum_v = 0.;
-  ClothLane half = cloth_lane_set (0.5), m[3], most, tension[3];
+  ClothLane half = cloth_lane_set (0.5), m[3], most, aslant, tension[3];
   ClothLaneEdges edges;
 
   cloth_lane_measure (state, &state->triangles[triangle], &edges);
   cloth_lane_map (state->triangles[triangle].t, FALSE, edges.d, m);
   cloth_lane_map_rest (state->metric, m);
   most = cloth_lane_max (m[0], m[1]);
+  aslant = cloth_lane_set (1.) + cloth_lane_abs (m[2]) /
+      cloth_lane_sqrt (cloth_lane_max (m[0] * m[1], cloth_lane_set (1e-12)));
   tension[0] = state->stretch_warp * above_zero (m[0] * half - half);
   tension[1] = state->stretch_weft * above_zero (m[1] * half - half);
   tension[2] = state->shear * cloth_lane_abs (m[2]);
@@ -51,11 +54,14 @@ add_triangle (const ClothLaneState * state, guint triangle, ClothLane3 * rows)
     const gdouble one_u = t->area * fabs (u[k]), one_v = t->area * fabs (v[k]);
     const gdouble sheared = sum_u + sum_v;
 
-    row[ALONG_U] += state->stretch_warp * m[0] * cloth_lane_set (one_u *
-        sum_u) + state->shear * most * cloth_lane_set (one_v * sheared);
-    row[ALONG_V] += state->stretch_weft * m[1] * cloth_lane_set (one_v *
-        sum_v) + state->shear * most * cloth_lane_set (one_u * sheared);
-    row[PULLED] += tension[0] * cloth_lane_set (one_u * sum_u) +
+    row[ALONG_U] +=
+        state->stretch_warp * m[0] * aslant * cloth_lane_set (one_u * sum_u) +
+        state->shear * most * cloth_lane_set (one_v * sheared);
+    row[ALONG_V] +=
+        state->stretch_weft * m[1] * aslant * cloth_lane_set (one_v * sum_v) +
+        state->shear * most * cloth_lane_set (one_u * sheared);
+    row[PULLED] +=
+        tension[0] * cloth_lane_set (one_u * sum_u) +
         tension[1] * cloth_lane_set (one_v * sum_v) +
         tension[2] * cloth_lane_set (one_u * sum_v + one_v * sum_u);
   }
@@ -73,15 +79,15 @@ add_spring (const ClothLaneState * state, guint spring, ClothLane3 * rows)
       along);
   longer = cloth_lane_max (cloth_lane_sqrt (cloth_lane_dot (along, along)),
       cloth_lane_set (1e-12));
-  /* of the shape in the plane: another one at rest is within the margin */
   tension = k * above_zero (cloth_lane_set (1.) -
-      cloth_lane_set (s->length) / longer);
+      (state->rest_changed ? cloth_lane_rest_length (state, s) :
+          cloth_lane_set (s->length)) / longer);
   for (guint end = 0; end < 2; end++)
     rows[s->particle[end]][PULLED] += state->fixed[s->particle[!end]] ?
         tension : tension + tension;
 }
 
-/* Which particles are held in all lanes. */
+/* Which particles are held in all lanes, and will be for a frame. */
 static void
 find_fixed (ClothLaneState * state)
 {
@@ -91,7 +97,8 @@ find_fixed (ClothLaneState * state)
   if (cloth_lane_any (cloth_lane_less (zero, state->compliance)))
     return;
   for (guint i = 0; i < state->body->n_held; i++)
-    if (state->held[i])
+    if (state->held[i] && state->body->held[i].until_s >= state->time +
+        state->body->frame_s)
       state->fixed[state->body->held[i].particle] = TRUE;
 }
 
@@ -102,6 +109,7 @@ void CLOTH_LANE_NAME (cloth_lane_strained) (ClothLaneState * state)
   ClothLane3 *rows = state->f;
   const gboolean springs = state->force_model == CLOTH_FORCE_MASS_SPRING;
   ClothLaneBounds *bounds = &state->strained;
+  ClothLane ratio;
 
   find_fixed (state);
   memset (rows, 0, state->n * sizeof *rows);
@@ -131,5 +139,10 @@ void CLOTH_LANE_NAME (cloth_lane_strained) (ClothLaneState * state)
       bounds->own);
   bounds->pulled = cloth_lane_select (state->diverged, cloth_lane_set (0.),
       bounds->pulled);
+  /* threads that effects make stiffer pull and stiffen as much more; that is not damped */
+  ratio = state->omega2 / cloth_lane_max (state->own_omega2,
+      cloth_lane_set (1e-12));
+  bounds->pulled = bounds->pulled * ratio + above_zero (bounds->own -
+      state->own_omega2) * above_zero (ratio - cloth_lane_set (1.));
   bounds->margin = CLOTH_LANE_MARGIN_STRAINED;
 }

@@ -13,7 +13,7 @@
 #define LEAST 8
 /* A blur ends so many standard deviations away. */
 #define REACH 4.0
-/* Of the greatest blur and step of the levels: 2 (4 √512 + 16) + 2. */
+/* Of the greatest blur and step of the levels: 2 ⌈4 √512 + 16⌉ + 2. */
 #define MOST_TAPS 216
 /* Pole of the filter that makes coefficients, and after how many samples it has faded. */
 #define POLE -0.26794919243112270647
