@@ -107,27 +107,25 @@ diagnose (ClothTake * take, ClothTake * baseline, guint threads)
   return result;
 }
 
-/* @slow: of a kind that others are of, too: only with -m slow */
 typedef struct
 {
   const gchar *effect;
   gdouble values[CLOTH_EFFECT_MAX_PARAMETERS];
-  gboolean slow;
 } Case;
 
 static const Case cases[] = {
   {"air_drag", {2.}},
   {"gravity_tilt", {4., 0.}},
-  {"mass_distribution", {3., 0.03}, TRUE},
+  {"mass_distribution", {3., 0.03}},
   {"clamp_slip", {-0.015, 0., -0.015, 0.7, 1.}},
   /* far from where its derivative at the null holds */
   {"clamp_delay", {0.2}},
-  {"clamp_slip", {0.04, 0., 0.03, 0.8, 1.}, TRUE},
+  {"clamp_slip", {0.04, 0., 0.03, 0.8, 1.}},
 };
 
 static const Case pairs[][2] = {
   {{"clamp_slip", {-0.015, 0., -0.015, 0.7, 1.}}, {"shear", {0.9}}},
-  {{"shrinkage", {0.02, 0.02}}, {"air_drag", {2.}, TRUE}},
+  {{"shrinkage", {0.02, 0.02}}, {"air_drag", {2.}}},
   /* either alone is less likely than wind, which does both */
   {{"gravity_tilt", {2.2, 1.3}}, {"air_drag", {3.5}}},
 };
@@ -522,23 +520,19 @@ main (int argc, char **argv)
     g_autofree gchar *path = g_strdup_printf ("/gap/named/%s/%u",
         cases[i].effect, i);
 
-    if (!cases[i].slow || g_test_slow ())
-      g_test_add_data_func (path, &cases[i], test_named);
+    g_test_add_data_func (path, &cases[i], test_named);
   }
   for (guint i = 0; i < G_N_ELEMENTS (pairs); i++) {
     g_autofree gchar *path =
         g_strdup_printf ("/gap/pair/%s/%u", pairs[i][1].effect, i);
 
-    if (!pairs[i][1].slow || g_test_slow ())
-      g_test_add_data_func (path, pairs[i], test_pair);
+    g_test_add_data_func (path, pairs[i], test_pair);
   }
   g_test_add_func ("/gap/gust", test_gust);
   g_test_add_func ("/gap/no-gap", test_no_gap);
   g_test_add_func ("/gap/hidden", test_hidden);
   g_test_add_func ("/gap/no-baseline", test_no_baseline);
-  /* test same-bytes holds a diagnosis by one thread against one by several, too */
-  if (g_test_slow ())
-    g_test_add_func ("/gap/threads", test_threads);
+  g_test_add_func ("/gap/threads", test_threads);
   g_test_add_func ("/gap/unknown-effect", test_unknown_effect);
   g_test_add_func ("/gap/narrow", test_narrow);
   g_test_add_func ("/gap/diverging", test_diverging);
