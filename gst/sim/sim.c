@@ -409,28 +409,28 @@ strain_groups (gpointer data, guint begin, guint end, guint worker)
     sim->groups[i].backend->strain (sim->groups[i].lanes);
 }
 
-/* The step of cloth as it is stretched now, which is stiffer than at rest, when the step is an automatic one; and how many
- * stages it needs. */
-static gdouble
-find_strained_step (ClothSim * sim, guint * stages)
+/* Finds the step of cloth as it is stretched now, which is stiffer than at rest, when the step is an automatic one; and
+ * how many stages it needs. */
+static void
+find_strained_step (ClothSim * sim)
 {
   /* the effect time_step shortens all steps alike */
   const gdouble share = MIN (sim->numerics->step_factor, 1.);
   gdouble step;
 
-  *stages = sim->stages;
   sim->strained_step = sim->time_step;
+  sim->n_stages = sim->stages;
   if (sim->fixed_step > 0.)
-    return sim->time_step;
+    return;
   cloth_pool_run_one_by_one (sim->pool, strain_groups, sim, sim->n_groups);
   step = bound (sim, sim->stages, sim->time_step / share, TRUE);
   if (step * share >= sim->time_step)
-    return sim->time_step;
+    return;
   step = MAX (round_step (step), sim->time_step / share * LEAST_STRAINED);
-  for (guint s = 1; s < sim->stages && *stages == sim->stages; s++)
+  sim->strained_step = step * share;
+  for (guint s = 1; s < sim->n_stages; s++)
     if (bound (sim, s, step, TRUE) >= step)
-      *stages = s;
-  return sim->strained_step = step * share;
+      sim->n_stages = s;
 }
 
 /* @sim: a simulation
@@ -453,11 +453,11 @@ cloth_sim_advance (ClothSim * sim, gdouble until_s)
     advance_adaptive (sim, until_s);
     return;
   }
+  find_strained_step (sim);
   sim->until = until_s;
   /* a step too many for a rounding error would be a waste */
   sim->n_steps =
-      (guint) CLAMP (ceil (span / find_strained_step (sim,
-              &sim->n_stages) - 1e-9), 1., MAX_STEPS);
+      (guint) CLAMP (ceil (span / sim->strained_step - 1e-9), 1., MAX_STEPS);
   cloth_pool_run_one_by_one (sim->pool, advance_groups, sim, sim->n_groups);
   sim->time = until_s;
 }

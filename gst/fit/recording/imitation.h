@@ -25,4 +25,6 @@ void cloth_imitations_spoil (ClothImitations * imitations,
     const gboolean * sound, gdouble noise, guint64 seed);
 void cloth_imitations_free (ClothImitations * imitations);
 
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothImitations, cloth_imitations_free)
+
 G_END_DECLS

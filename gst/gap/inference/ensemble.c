@@ -191,17 +191,9 @@ cloth_ensemble_free (ClothEnsemble * ensemble)
 typedef struct
 {
   const ClothFeatures *features;
-  ClothImitations *made;
+  const ClothImitations *made;
   gdouble *z;
 } Made;
-
-static void
-made_clear (Made * m)
-{
-  cloth_imitations_free (m->made);
-}
-
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Made, made_clear);
 
 static void
 collect (gpointer data, guint model, guint frame, const gdouble * positions)
@@ -232,7 +224,8 @@ cloth_ensemble_run (const ClothEnsemble * ensemble,
 {
   const ClothEnsemble *e = ensemble;
   const ClothRecording *r = study->recording;
-  g_auto (Made) m = { study->features, cloth_imitations_new (r, e->n), z };
+  g_autoptr (ClothImitations) made = cloth_imitations_new (r, e->n);
+  Made m = { study->features, made, z };
   g_autofree const ClothModel **models = g_new (const ClothModel *, e->n);
   g_autofree gdouble *gains = g_new (gdouble, e->n);
   g_autofree gboolean *followed = g_new (gboolean, e->n);
@@ -246,11 +239,11 @@ cloth_ensemble_run (const ClothEnsemble * ensemble,
   }
   options->simulations += 2 * e->n;
   if (!cloth_rollout_free (r, (const ClothModel * const *) e->models, e->n,
-          &quiet, cloth_imitations_keep, m.made, sound, error))
+          &quiet, cloth_imitations_keep, made, sound, error))
     return FALSE;
-  cloth_imitations_spoil (m.made, sound, noise, options->rollout.seed +
+  cloth_imitations_spoil (made, sound, noise, options->rollout.seed +
       stream * e->n + 1);
-  if (!cloth_rollout_nudged ((const ClothRecording * const *) m.made->list,
+  if (!cloth_rollout_nudged ((const ClothRecording * const *) made->list,
           models, gains, e->n, &quiet, collect, &m, followed, error))
     return FALSE;
   for (guint i = 0; i < e->n; i++)

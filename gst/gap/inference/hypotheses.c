@@ -278,8 +278,9 @@ find_behind (const ClothDiagnosis * d, const ClothGapHypothesis * h)
   return -h->evidence.log_evidence - log_odds (d, h);
 }
 
-/* A hypothesis by the derivatives of the linearisation: from where the base is. */
-static gboolean
+/* A hypothesis by the derivatives of the linearisation: from where the base is. It stays uncompared when its numbers
+ * aren't finite. */
+static void
 screen (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     ClothGapHypothesis * h)
 {
@@ -295,13 +296,12 @@ screen (const ClothDiagnosis * d, const ClothGapLinearisation * l,
   if (h->n_winds ? !find_gust_evidence (l->gram, list, at, h) :
       !cloth_gap_gram_find_evidence (l->gram, list, at, h->priors,
           h->n_directions, &h->evidence))
-    return FALSE;
+    return;
   h->by_residual = find_behind (d, h);
   memcpy (h->next, h->evidence.values, sizeof h->next);
   keep_in_range (d, h);
   h->is_compared = TRUE;
   h->is_settled = h->n_winds > 0;
-  return TRUE;
 }
 
 static gint
@@ -365,7 +365,6 @@ typedef struct
   const ClothDiagnosis *d;
   const ClothGapLinearisation *l;
   GArray *hypotheses;
-  gboolean *finite;             /* which ones could be screened */
 } Screening;
 
 static void
@@ -374,8 +373,7 @@ screen_some (gpointer data, guint begin, guint end, guint worker)
   const Screening *s = data;
 
   for (guint i = begin; i < end; i++)
-    s->finite[i] = screen (s->d, s->l, &g_array_index (s->hypotheses,
-            ClothGapHypothesis, i));
+    screen (s->d, s->l, &g_array_index (s->hypotheses, ClothGapHypothesis, i));
 }
 
 /* What @sets become by one more effect, the likeliest first. */
@@ -400,13 +398,11 @@ grow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
         g_array_append_val (all, h);
     }
   }
-  screening.finite = g_new0 (gboolean, all->len + 1);
   cloth_pool_run_one_by_one (pool, screen_some, &screening, all->len);
   for (guint i = 0; i < all->len; i++)
-    if (screening.finite[i])
+    if (g_array_index (all, ClothGapHypothesis, i).is_compared)
       g_array_append_vals (grown, &g_array_index (all, ClothGapHypothesis, i),
           1);
-  g_free (screening.finite);
   g_array_sort (grown, compare_by_residual);
   return grown;
 }

@@ -88,8 +88,6 @@ ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness) (const ClothLaneState * state)
 
   for (guint i = 0; i < state->n; i++) {
     const ClothBodyBound *b = &state->body->bounds[i];
-    ClothLane bend = state->bending_warp * (ClothReal) b->bend_warp +
-        state->bending_weft * (ClothReal) b->bend_weft;
     ClothLane u = state->stretch_warp * (ClothReal) b->warp +
         state->shear * (ClothReal) b->shear_u;
     ClothLane v = state->stretch_weft * (ClothReal) b->weft +
@@ -103,8 +101,8 @@ ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness) (const ClothLaneState * state)
           state->stretch_weft * (ClothReal) b->springs[1][1] +
           state->shear * (ClothReal) b->springs[1][2];
     }
-    most = cloth_lane_max (most, (cloth_lane_max (u, v) + bend) *
-        state->inverse_mass[i]);
+    most = cloth_lane_max (most, (cloth_lane_max (u, v) +
+            cloth_lane_bend_bound (state, i)) * state->inverse_mass[i]);
   }
   return most;
 }

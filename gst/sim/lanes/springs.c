@@ -5,34 +5,12 @@
 #include "gst/sim/lanes/strain.h"
 
 CLOTH_LANE_INLINE ClothLane
-spring_stiffness (const ClothLaneState * state, const ClothLaneSpring * s)
-{
-  return state->stretch_warp * s->warp + state->stretch_weft * s->weft +
-      state->shear * s->shear;
-}
-
-CLOTH_LANE_INLINE ClothLane
 split (ClothLane stretch, ClothLane ratio)
 {
   ClothLane zero = cloth_lane_set (0.);
 
   return cloth_lane_max (stretch, zero) + ratio * cloth_lane_min (stretch,
       zero);
-}
-
-CLOTH_LANE_INLINE ClothLane
-stretch_of (const ClothLaneState * state, const ClothLaneSpring * s,
-    gboolean rest_changed, ClothLane along[3], ClothLane * inverse)
-{
-  ClothLane length;
-
-  cloth_lane_subtract (state->x[s->particle[1]], state->x[s->particle[0]],
-      along);
-  length = cloth_lane_sqrt (cloth_lane_dot (along, along));
-  *inverse = cloth_lane_set (1.) /
-      cloth_lane_max (length, cloth_lane_set (1e-12));
-  return rest_changed ? length - cloth_lane_rest_length (state,
-      s) : length - s->length;
 }
 
 CLOTH_LANE_INLINE void
@@ -44,11 +22,12 @@ springs (ClothLaneState * state, gboolean rest_changed)
     const ClothLaneSpring *s = &state->springs[i];
     guint32 a = s->particle[0], b = s->particle[1];
     ClothLane along[3], velocity[3], inverse, rate, force;
-    ClothLane stretch = stretch_of (state, s, rest_changed, along, &inverse);
+    ClothLane stretch =
+        cloth_lane_spring_stretch (state, s, rest_changed, along, &inverse);
 
     cloth_lane_subtract (state->v[b], state->v[a], velocity);
     rate = cloth_lane_dot (along, velocity) * inverse;
-    force = spring_stiffness (state, s) * (split (stretch, ratio) +
+    force = cloth_lane_spring_stiffness (state, s) * (split (stretch, ratio) +
         beta * rate) * inverse;
     for (guint k = 0; k < 3; k++) {
       ClothLane pull = force * along[k];
@@ -76,9 +55,10 @@ CLOTH_LANE_NAME (cloth_lane_springs_energy) (const ClothLaneState * state)
   for (guint i = 0; i < state->body->n_springs; i++) {
     const ClothLaneSpring *s = &state->springs[i];
     ClothLane along[3], inverse;
-    ClothLane stretch = stretch_of (state, s, TRUE, along, &inverse);
+    ClothLane stretch =
+        cloth_lane_spring_stretch (state, s, TRUE, along, &inverse);
 
-    energy += half * spring_stiffness (state, s) * stretch *
+    energy += half * cloth_lane_spring_stiffness (state, s) * stretch *
         split (stretch, state->compression_ratio);
   }
   return energy;
@@ -95,10 +75,12 @@ void CLOTH_LANE_NAME (cloth_lane_springs_links) (const ClothLaneState * state,
     ClothLaneLink *link = &links[i];
     ClothLane inverse, stretch;
 
-    stretch = stretch_of (state, s, state->rest_changed, link->along, &inverse);
+    stretch =
+        cloth_lane_spring_stretch (state, s, state->rest_changed, link->along,
+        &inverse);
     for (guint k = 0; k < 3; k++)
       link->along[k] *= inverse;
-    link->damped = spring_stiffness (state, s);
+    link->damped = cloth_lane_spring_stiffness (state, s);
     link->k = link->damped * cloth_lane_select (cloth_lane_less (stretch,
             zero), state->compression_ratio, one);
     link->g = link->damped * cloth_lane_max (stretch, zero) * inverse;

@@ -137,10 +137,10 @@ CLOTH_LANE_NAME (cloth_lane_staged_time_step) (const ClothLaneState * state,
 
   for (guint l = 0; l < CLOTH_N_LANES; l++) {
     const gdouble own = CLOTH_LANE_AT (&state->own_omega2, l);
-    const gdouble more = CLOTH_LANE_AT (&bounds->own, l) - own;
-    const gdouble damped = CLOTH_LANE_AT (&state->beta, l) * (own + more);
+    const gdouble now = CLOTH_LANE_AT (&bounds->own, l);
+    const gdouble damped = CLOTH_LANE_AT (&state->beta, l) * now;
     const gdouble tension = CLOTH_LANE_AT (&bounds->pulled, l);
-    gdouble omega2 = CLOTH_LANE_AT (&state->omega2, l) + more +
+    gdouble omega2 = CLOTH_LANE_AT (&state->omega2, l) + (now - own) +
         CLOTH_LANE_AT (&state->targets.gain, l) + CLOTH_LANE_AT (&pulled, l);
     /* velocities that change their sign in each step are ahead twice as large */
     gdouble c = CLOTH_LANE_AT (&state->friction, l) +

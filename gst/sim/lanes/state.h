@@ -103,9 +103,10 @@ typedef struct
   ClothReal warp, weft;
 } ClothLaneBend;
 
-/* Shares of a bound that are used: of the cloth at rest, so that what is stretched less than 1.2 times, where damping binds a single stage 1.13 times, needs no other step
- * ((3 λ² − 1)/2 is the stiffness at stretch λ in St. Venant and Kirchhoff's law); and of what is looked at as it is stretched,
- * so that it may be stretched further before it is looked at again. */
+/* Shares of a bound that are used: of the cloth at rest, so that what is stretched less than 1.2 times, where damping
+ * binds a single stage 1.13 times, needs no other step ((3 λ² − 1)/2 is the stiffness at stretch λ in St. Venant and
+ * Kirchhoff's law); and of what is looked at as it is stretched, so that it may be stretched further before it is looked
+ * at again. */
 #define CLOTH_LANE_MARGIN 0.7
 #define CLOTH_LANE_MARGIN_STRAINED 0.9
 
@@ -321,6 +322,16 @@ void CLOTH_LANE_NAME (cloth_lane_implicit_take) (ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_stiffness) (const ClothLaneState * state);
 ClothLane CLOTH_LANE_NAME (cloth_lane_explicit_time_step) (const
     ClothLaneState * state, const ClothLaneBounds * bounds);
+
+/* The part of bending in a particle's row of stiffness. */
+CLOTH_LANE_INLINE ClothLane
+cloth_lane_bend_bound (const ClothLaneState * state, guint particle)
+{
+  const ClothBodyBound *b = &state->body->bounds[particle];
+
+  return state->bending_warp * (ClothReal) b->bend_warp +
+      state->bending_weft * (ClothReal) b->bend_weft;
+}
 
 /* One triangle in the air: its normal times its area, its area, the mean velocity. */
 CLOTH_LANE_INLINE void

@@ -1,4 +1,4 @@
-/* Strains of triangles from products of their edges, and the forces of stresses; springs at rest.
+/* Strains of triangles from products of their edges, and the forces of stresses; stretch of springs.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
@@ -129,7 +129,7 @@ cloth_lane_pull (ClothLaneState * state, const ClothLaneTriangle * t,
 
 /* What the effects' change of the rest shape does to the length of a spring. */
 CLOTH_LANE_INLINE ClothLane
-cloth_lane_rest_length (const ClothLaneState * state, const ClothLaneSpring * s)
+cloth_lane_spring_rest (const ClothLaneState * state, const ClothLaneSpring * s)
 {
   const ClothLane *r = state->rest;
   ClothLane det = r[0] * r[3] - r[1] * r[2];
@@ -138,4 +138,27 @@ cloth_lane_rest_length (const ClothLaneState * state, const ClothLaneSpring * s)
   ClothReal square = s->u * s->u + s->v * s->v;
 
   return cloth_lane_sqrt ((u * u + v * v) / square) * s->length;
+}
+
+CLOTH_LANE_INLINE ClothLane
+cloth_lane_spring_stiffness (const ClothLaneState * state, const ClothLaneSpring * s)
+{
+  return state->stretch_warp * s->warp + state->stretch_weft * s->weft +
+      state->shear * s->shear;
+}
+
+/* By how much a spring is longer than at rest, m; the way from one end to the other, and one over its length. */
+CLOTH_LANE_INLINE ClothLane
+cloth_lane_spring_stretch (const ClothLaneState * state, const ClothLaneSpring * s,
+    gboolean rest_changed, ClothLane along[3], ClothLane * inverse)
+{
+  ClothLane length;
+
+  cloth_lane_subtract (state->x[s->particle[1]], state->x[s->particle[0]],
+      along);
+  length = cloth_lane_sqrt (cloth_lane_dot (along, along));
+  *inverse = cloth_lane_set (1.) /
+      cloth_lane_max (length, cloth_lane_set (1e-12));
+  return rest_changed ? length - cloth_lane_spring_rest (state,
+      s) : length - s->length;
 }

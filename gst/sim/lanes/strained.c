@@ -6,8 +6,9 @@
  *        + area (S_uu u_a u_b + S_vv v_a v_b + S_uv (u_a v_b + v_a u_b)) 1.
  * The first line grows with |x_u|² and |x_v|² and is damped by β times as much. The second, of tensions, is not damped at
  * all: across a pulled thread lengths don't change. Compression is left out, as it hastens buckling and no more.
- * Where x_u and x_v, at the angle θ, are not
- * perpendicular the terms of warp and weft add up to (1 + |cos θ|) times the larger at most. Gershgorin's rows bound both; what a clamp holds doesn't move, so it has neither row nor column. Springs: k n nᵀ, and k (1 − L/l) in all directions.
+ * Where x_u and x_v, at the angle θ, are not perpendicular the terms of warp and weft add up to (1 + |cos θ|) times the
+ * larger at most. Gershgorin's rows bound both; what a clamp holds doesn't move, so it has neither row nor column.
+ * Springs: k n nᵀ, and k (1 − L/l) in all directions.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/strain.h"
@@ -71,17 +72,12 @@ static void
 add_spring (const ClothLaneState * state, guint spring, ClothLane3 * rows)
 {
   const ClothLaneSpring *s = &state->springs[spring];
-  ClothLane along[3], longer, tension;
-  ClothLane k = state->stretch_warp * s->warp + state->stretch_weft * s->weft +
-      state->shear * s->shear;
+  ClothLane along[3], inverse;
+  ClothLane longer = cloth_lane_spring_stretch (state, s, state->rest_changed,
+      along, &inverse);
+  ClothLane tension = cloth_lane_spring_stiffness (state, s) *
+      above_zero (longer) * inverse;
 
-  cloth_lane_subtract (state->x[s->particle[1]], state->x[s->particle[0]],
-      along);
-  longer = cloth_lane_max (cloth_lane_sqrt (cloth_lane_dot (along, along)),
-      cloth_lane_set (1e-12));
-  tension = k * above_zero (cloth_lane_set (1.) -
-      (state->rest_changed ? cloth_lane_rest_length (state, s) :
-          cloth_lane_set (s->length)) / longer);
   for (guint end = 0; end < 2; end++)
     rows[s->particle[end]][PULLED] += state->fixed[s->particle[!end]] ?
         tension : tension + tension;
@@ -119,15 +115,12 @@ void CLOTH_LANE_NAME (cloth_lane_strained) (ClothLaneState * state)
     add_spring (state, i, rows);
   bounds->own = bounds->pulled = cloth_lane_set (0.);
   for (guint i = 0; i < state->n; i++) {
-    const ClothBodyBound *b = &state->body->bounds[i];
-    ClothLane bend = state->bending_warp * (ClothReal) b->bend_warp +
-        state->bending_weft * (ClothReal) b->bend_weft;
-
     if (state->fixed[i])
       continue;
     bounds->own =
         cloth_lane_max (bounds->own, (cloth_lane_max (rows[i][ALONG_U],
-                rows[i][ALONG_V]) + bend) * state->inverse_mass[i]);
+                rows[i][ALONG_V]) + cloth_lane_bend_bound (state,
+                i)) * state->inverse_mass[i]);
     bounds->pulled =
         cloth_lane_max (bounds->pulled,
         rows[i][PULLED] * state->inverse_mass[i]);

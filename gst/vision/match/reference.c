@@ -273,7 +273,7 @@ distance (const guint8 * a, const guint8 * b)
 typedef struct
 {
   const ClothReferenceParams *params;
-  ClothCvPicture noisy, flat[2];        /* of each side */
+  ClothCvPicture pictures[3];   /* under noise; of each side */
   guint n_views;                /* of a side */
   GArray *items[2 * CLOTH_REFERENCE_VIEWS + 1];
   GError *errors[2 * CLOTH_REFERENCE_VIEWS + 1];
@@ -286,9 +286,8 @@ looks_clear (Looks * looks)
     g_clear_pointer (&looks->items[i], g_array_unref);
     g_clear_error (&looks->errors[i]);
   }
-  g_free ((gpointer) looks->noisy.data);
-  g_free ((gpointer) looks->flat[0].data);
-  g_free ((gpointer) looks->flat[1].data);
+  for (guint i = 0; i < G_N_ELEMENTS (looks->pictures); i++)
+    g_free ((gpointer) looks->pictures[i].data);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Looks, looks_clear);
@@ -298,30 +297,25 @@ looks_init (Looks * looks, const ClothReferenceParams * params,
     const ClothCvPicture * picture)
 {
   const gint width = picture->width, height = picture->height;
-  guint8 *data[3];
   ClothRandom random;
 
   looks->params = params;
   looks->n_views = 4 * (guint) params->oblique + 1;
-  for (guint i = 0; i < G_N_ELEMENTS (data); i++)
-    data[i] = g_malloc ((gsize) width * height);
   cloth_random_init (&random, 1);
-  for (gint y = 0; y < height; y++)
-    for (gint x = 0; x < width; x++) {
-      const guint8 *row = picture->data + (gsize) y * picture->stride;
-      const gdouble value = row[x] +
-          params->noise * cloth_random_gaussian (&random);
+  for (gint i = 0; i <= params->sides; i++) {
+    guint8 *data = g_malloc ((gsize) width * height);
 
-      data[0][y * width + x] = row[x];
-      data[1][y * width + x] = row[width - 1 - x];
-      data[2][y * width + x] = (guint8) lrint (CLAMP (value, 0, 255));
-    }
-  looks->flat[0] = (ClothCvPicture) {
-  data[0], width, height, width};
-  looks->flat[1] = (ClothCvPicture) {
-  data[1], width, height, width};
-  looks->noisy = (ClothCvPicture) {
-  data[2], width, height, width};
+    looks->pictures[i] = (ClothCvPicture) {
+    data, width, height, width};
+    for (gint y = 0; y < height; y++)
+      for (gint x = 0; x < width; x++) {
+        const gdouble value = picture->data[(gsize) y * picture->stride +
+            (i == 2 ? width - 1 - x : x)] +
+            (i ? 0. : params->noise * cloth_random_gaussian (&random));
+
+        data[y * width + x] = (guint8) lrint (CLAMP (value, 0, 255));
+      }
+  }
 }
 
 static void
@@ -336,14 +330,9 @@ look (gpointer data, guint begin, guint end, guint worker)
     const guint side = i ? (i - 1) / looks->n_views : 0;
 
     looks->items[i] = g_array_new (FALSE, FALSE, sizeof (Item));
-    if (!sift)
-      continue;
-    if (i == 0)
-      add_view (looks->items[i], sift, &looks->noisy, 0, 0, 0.,
-          &looks->errors[i]);
-    else
-      add_view (looks->items[i], sift, &looks->flat[side],
-          (i - 1) % looks->n_views, side, params->least_scale,
+    if (sift)
+      add_view (looks->items[i], sift, &looks->pictures[i ? 1 + side : 0],
+          i ? (i - 1) % looks->n_views : 0, side, i ? params->least_scale : 0.,
           &looks->errors[i]);
   }
 }
