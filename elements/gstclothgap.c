@@ -136,7 +136,7 @@ load_baseline (GstGapDiagnose * self, const ClothTake * take, GError ** error)
   return self->baseline && cloth_gap_check_same_cloth ("the baseline",
       cloth_take_get_topology (self->baseline), "the take of location",
       cloth_take_get_topology (take), error)
-      && gst_cloth_io_observations_load (folder,
+      && gst_cloth_io_observations_load (folder, NULL,
       cloth_take_get_topology (self->baseline), &self->baseline_observations,
       error);
 }
@@ -151,8 +151,8 @@ gst_gap_diagnose_open (GstClothFollow * follow)
   const gchar *location = gst_cloth_follow_get_settings (follow)->location;
   g_autoptr (GError) error = NULL;
 
-  if (!gst_cloth_io_observations_load (location, cloth_take_get_topology (take),
-          &self->observations, &error))
+  if (!gst_cloth_io_observations_load (location, NULL,
+          cloth_take_get_topology (take), &self->observations, &error))
     return gst_follow_fail (element, "location", location, error);
   if (!load_baseline (self, take, &error))
     return gst_follow_fail (element, "baseline", settings->baseline, error);

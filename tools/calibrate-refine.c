@@ -16,32 +16,16 @@
 static ClothObservations *
 load (const gchar * rig_file, const gchar * folder, GError ** error)
 {
-  g_autoptr (ClothRig) rig = cloth_rig_load (rig_file, error);
-  g_autoptr (ClothTake) take = rig ? cloth_take_open (folder, error) : NULL;
+  g_autoptr (ClothTake) take = cloth_take_open (folder, error);
   ClothObservations *observations = NULL;
-  gboolean same;
 
-  if (!take || !gst_cloth_io_observations_load_take (take, &observations,
-          error))
+  if (!take || !gst_cloth_io_observations_load_take (take, rig_file,
+          &observations, error))
     return NULL;
-  if (!observations) {
+  if (!observations)
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
         "“%s” has no folder observations: record what the cameras see by "
         "clothmetapay ! filesink location=observations/CAMERA.obs", folder);
-    return NULL;
-  }
-  same = observations->rig->n_cameras == rig->n_cameras;
-  for (guint c = 0; same && c < rig->n_cameras; c++)
-    same = !strcmp (observations->rig->cameras[c].name, rig->cameras[c].name);
-  if (!same) {
-    cloth_observations_free (observations);
-    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
-        "“%s” has not the cameras of the take's own rig.json, in its order: "
-        "give the rig that the take was filmed with", rig_file);
-    return NULL;
-  }
-  cloth_rig_free (observations->rig);
-  observations->rig = g_steal_pointer (&rig);
   return observations;
 }
 

@@ -70,7 +70,7 @@ load_observations (gchar ** folders, const GPtrArray * takes, GError ** error)
     ClothObservations *observations;
 
     if (!gst_cloth_io_observations_load_take (g_ptr_array_index (takes, i),
-            &observations, error)) {
+            NULL, &observations, error)) {
       g_prefix_error (error, "“%s”: ", folders[i]);
       return NULL;
     }

@@ -15,7 +15,6 @@
 #include "gst/fit/synthesis/silhouette.h"
 #include "gst/fit/synthesis/synthesis.h"
 #include "gst/gap/report/view.h"
-#include "gst/rig/rigfile.h"
 #include "tools/fit-track.h"
 #include "tools/tool.h"
 
@@ -59,41 +58,6 @@ inputs_clear (Inputs * i)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Inputs, inputs_clear);
 
-/* Puts another rig of the same cameras in place of the take's. */
-static gboolean
-replace_rig (ClothObservations * observations, const gchar * path,
-    GError ** error)
-{
-  g_autoptr (ClothRig) rig = cloth_rig_load (path, error);
-
-  if (!rig)
-    return FALSE;
-  for (guint c = 0; c < MAX (rig->n_cameras, observations->rig->n_cameras); c++)
-    if (rig->n_cameras != observations->rig->n_cameras
-        || strcmp (rig->cameras[c].name,
-            observations->rig->cameras[c].name) != 0) {
-      g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
-          "--rig: “%s” has not the cameras of the take's own rig.json, in its "
-          "order", path);
-      return FALSE;
-    }
-  for (guint c = 0; c < rig->n_cameras; c++) {
-    const ClothCamera *now = &rig->cameras[c];
-    const ClothCamera *own = &observations->rig->cameras[c];
-
-    if (now->width != own->width || now->height != own->height) {
-      g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
-          "--rig: “%s” of “%s” has pictures of %d × %d pixels, the take's %d × "
-          "%d", now->name, path, now->width, now->height, own->width,
-          own->height);
-      return FALSE;
-    }
-  }
-  cloth_rig_free (observations->rig);
-  observations->rig = g_steal_pointer (&rig);
-  return TRUE;
-}
-
 static gboolean
 load (const Arguments * a, Inputs * i, GError ** error)
 {
@@ -108,11 +72,10 @@ load (const Arguments * a, Inputs * i, GError ** error)
     if (!take)
       return FALSE;
     g_ptr_array_add (i->takes, take);
-    if (!gst_cloth_io_observations_load_take (take, &observations, error))
+    if (!gst_cloth_io_observations_load_take (take, a->rig, &observations,
+            error))
       return FALSE;
     g_ptr_array_add (i->observations, observations);
-    if (observations && a->rig && !replace_rig (observations, a->rig, error))
-      return FALSE;
     /* a mesh says more than what it was made of */
     input = (ClothSynthesisInput) {
     take, cloth_take_get_n_positions (take) ==
@@ -694,7 +657,7 @@ main (int argc, char **argv)
     {"model", 'm', 0, G_OPTION_ARG_FILENAME, &a.model,
         "What is known of the cloth, and what is free", "FILE"},
     {"rig", 0, 0, G_OPTION_ARG_FILENAME, &a.rig,
-        "A rig in place of the one in the take's folder", "FILE"},
+        "The rig, in place of rig.json in the takes' folders", "FILE"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &a.output,
         "The folder of what is made", "DIR"},
     {"spool", 0, 0, G_OPTION_ARG_FILENAME, &a.spool,

@@ -300,7 +300,7 @@ check_files (const gchar * path, const ClothRig * rig, GError ** error)
       continue;
     if (!is_of_camera (name, rig))
       return fail (error,
-          "“" FOLDER "/%s” is of no camera of rig.json, whose "
+          "“" FOLDER "/%s” is of no camera of the rig, whose "
           "files would be %s: rename it, or take it away", shown, names);
     n++;
   }
@@ -341,14 +341,61 @@ load_files (ClothObservations * observations, const gchar * folder,
   return TRUE;
 }
 
+/* Pictures of another size than the take's own rig has them were not filmed with the rig that is given. */
+static gboolean
+check_sizes (const ClothRig * rig, const gchar * rig_file,
+    const gchar * own_file, GError ** error)
+{
+  g_autoptr (ClothRig) own = cloth_rig_load (own_file, error);
+
+  if (!own)
+    return FALSE;
+  for (guint i = 0; i < rig->n_cameras; i++) {
+    const ClothCamera *now = &rig->cameras[i];
+    const ClothCamera *before = cloth_rig_find (own, now->name);
+
+    if (before && (now->width != before->width
+            || now->height != before->height))
+      return fail (error,
+          "“%s” of “%s” has pictures of %d × %d pixels, the take's "
+          "%d × %d: give the rig that the take was filmed with", now->name,
+          rig_file, now->width, now->height, before->width, before->height);
+  }
+  return TRUE;
+}
+
+/* The rig of a take, or that in its place. */
+static ClothRig *
+load_rig (const gchar * folder, const gchar * rig_file, GError ** error)
+{
+  g_autofree gchar *own = g_build_filename (folder, "rig.json", NULL);
+  g_autofree gchar *inside = NULL;
+  g_autoptr (ClothRig) rig = NULL;
+
+  if (g_file_test (own, G_FILE_TEST_EXISTS)) {
+    if (!(inside = cloth_path_inside (folder, "rig.json", error)))
+      return NULL;
+  } else if (!rig_file) {
+    fail (error, "there are " FOLDER " but no rig.json in “%s”: add the "
+        "one that triangulate was given, or take them away", folder);
+    return NULL;
+  }
+  rig = cloth_rig_load (rig_file ? rig_file : inside, error);
+  if (!rig || (rig_file && inside
+          && !check_sizes (rig, rig_file, inside, error)))
+    return NULL;
+  return g_steal_pointer (&rig);
+}
+
 /* @folder: of a take
+ * @rig_file: (nullable): a rig in place of the take's rig.json
  * @topology: the take's mesh
  * @observations: (out) (transfer full) (nullable): what the cameras saw; %NULL when the take
  *   doesn't say
  * @error: #ClothFitError, #ClothRigError, #ClothFileError, #GST_CLOTH_ERROR, #GIOErrorEnum;
  *   it names the file, the picture and what to do
  *
- * Reads observations/<camera>.obs of the cameras of rig.json, one picture after the other.
+ * Reads observations/<camera>.obs of the cameras of the rig, one picture after the other.
  * Not each camera must have a file. A rig without the folder observations says nothing; the
  * folder without a rig, without files or with files of other names is an error, and so is
  * the folder when the mesh is no grid, whose vertices are numbered row by row.
@@ -356,30 +403,22 @@ load_files (ClothObservations * observations, const gchar * folder,
  * Returns: %FALSE when something is there that can't be used
  */
 gboolean
-gst_cloth_io_observations_load (const gchar * folder,
+gst_cloth_io_observations_load (const gchar * folder, const gchar * rig_file,
     const ClothTopology * topology, ClothObservations ** observations,
     GError ** error)
 {
   g_autofree gchar *path = g_build_filename (folder, FOLDER, NULL);
-  g_autofree gchar *rig_file = g_build_filename (folder, "rig.json", NULL);
-  g_autofree gchar *rig_path = NULL;
   g_autoptr (ClothObservations) made = NULL;
   ClothRig *rig;
 
   *observations = NULL;
   if (!g_file_test (path, G_FILE_TEST_EXISTS))
     return TRUE;
-  if (!g_file_test (rig_file, G_FILE_TEST_EXISTS))
-    return fail (error,
-        "there are " FOLDER " but no rig.json in “%s”: add the "
-        "one that triangulate was given, or take them away", folder);
   if (topology->columns < 2 || topology->rows < 2)
     return fail (error,
         "observations name the vertices of a grid, but the mesh "
         "of “%s” is none: take the folder " FOLDER " away", folder);
-  if (!(rig_path = cloth_path_inside (folder, "rig.json", error)))
-    return FALSE;
-  rig = cloth_rig_load (rig_path, error);
+  rig = load_rig (folder, rig_file, error);
   if (!rig)
     return FALSE;
   made = cloth_observations_new (rig, topology->n_vertices);
@@ -391,25 +430,27 @@ gst_cloth_io_observations_load (const gchar * folder,
 }
 
 /* @take: a take
+ * @rig_file: (nullable): a rig in place of the take's rig.json
  * @observations: (out) (transfer full) (nullable): what the cameras saw
  * @error: as of gst_cloth_io_observations_load ()
  *
- * As gst_cloth_io_observations_load (); what was read counts as files of the take.
+ * As gst_cloth_io_observations_load (); what was read of the take's folder counts as files of the take.
  *
  * Returns: %FALSE when something is there that can't be used
  */
 gboolean
-gst_cloth_io_observations_load_take (ClothTake * take,
+gst_cloth_io_observations_load_take (ClothTake * take, const gchar * rig_file,
     ClothObservations ** observations, GError ** error)
 {
   const gchar *folder = cloth_take_get_folder (take);
 
-  if (!gst_cloth_io_observations_load (folder, cloth_take_get_topology (take),
-          observations, error))
+  if (!gst_cloth_io_observations_load (folder, rig_file,
+          cloth_take_get_topology (take), observations, error))
     return FALSE;
   if (!*observations)
     return TRUE;
-  cloth_take_add_file (take, "rig.json");
+  if (!rig_file)
+    cloth_take_add_file (take, "rig.json");
   for (guint i = 0; i < (*observations)->rig->n_cameras; i++) {
     g_autofree gchar *name = name_file ((*observations)->rig, i);
     g_autofree gchar *path = g_build_filename (folder, name, NULL);

@@ -9,9 +9,9 @@
 G_BEGIN_DECLS
 
 gboolean gst_cloth_io_observations_load (const gchar * folder,
-    const ClothTopology * topology, ClothObservations ** observations, GError ** error);
-gboolean gst_cloth_io_observations_load_take (ClothTake * take, ClothObservations ** observations,
-    GError ** error);
+    const gchar * rig_file, const ClothTopology * topology, ClothObservations ** observations, GError ** error);
+gboolean gst_cloth_io_observations_load_take (ClothTake * take, const gchar * rig_file,
+    ClothObservations ** observations, GError ** error);
 gboolean gst_cloth_io_observations_read (ClothObservations * observations, guint camera,
     guint columns, guint rows, ClothInput * input, GError ** error);
 

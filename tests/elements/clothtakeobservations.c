@@ -174,7 +174,8 @@ load (const Fixture * f, ClothObservations ** observations, GError ** error)
   g_autoptr (ClothTopology) grid = cloth_topology_new_grid (COLUMNS, ROWS, 0.2f,
       0.1f);
 
-  return gst_cloth_io_observations_load (f->folder, grid, observations, error);
+  return gst_cloth_io_observations_load (f->folder, NULL, grid, observations,
+      error);
 }
 
 static ClothObservations *
@@ -426,6 +427,64 @@ test_no_rig (Fixture * f, gconstpointer data)
   refuse (f, "rig.json", "out of");
 }
 
+/* Another rig in place of the take's, which may be missing: its order of cameras counts, and its pictures are those that
+ * were filmed. */
+static void
+test_other_rig (Fixture * f, gconstpointer data)
+{
+  static const gchar *const small =
+      "{\"version\":1,\"cameras\":[{\"name\":\"left\",\"size\":[90,80],"
+      "\"K\":[[90,0,50],[0,90,40],[0,0,1]],\"distortion\":{\"model\":\"none\","
+      "\"coefficients\":[]},\"R\":[[1,0,0],[0,1,0],[0,0,1]],\"t\":[0,0,1]}]}";
+  g_autoptr (ClothTopology) grid = cloth_topology_new_grid (COLUMNS, ROWS, 0.2f,
+      0.1f);
+  g_autofree gchar *own = in_folder (f, "rig.json");
+  g_autofree gchar *other = in_folder (f, "other.json");
+  static const struct
+  {
+    gboolean has_own;
+    const gchar *rig, *says;
+  } cases[] = {
+    {TRUE, "{\"version\":1,\"cameras\":[" CAMERA ("right") "," CAMERA ("left")
+        "]}", NULL},
+    {TRUE, small, "100 × 80"},
+    {TRUE, "{\"version\":1,\"cameras\":[" CAMERA ("right") "]}",
+        "left.obs” is of no camera"},
+    {TRUE, NULL, "other.json"},
+    {FALSE, "{\"version\":1,\"cameras\":[" CAMERA ("right") "," CAMERA ("left")
+        "]}", NULL},
+    {FALSE, NULL, "other.json"}
+  };
+
+  append (f, see_square (0));
+  end_file (f, "left");
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (ClothObservations) observations = NULL;
+    g_autoptr (GError) error = NULL;
+    gboolean good;
+
+    if (cases[i].rig)
+      write_file (f, "other.json", cases[i].rig, -1);
+    else
+      g_remove (other);
+    if (!cases[i].has_own)
+      g_remove (own);
+    good = gst_cloth_io_observations_load (f->folder, other, grid,
+        &observations, &error);
+    g_assert_true (good == !cases[i].says);
+    if (good) {
+      const ClothObservation *seen =
+          &g_array_index (observations->list, ClothObservation, 0);
+
+      g_assert_cmpstr (observations->rig->cameras[seen->camera].name, ==,
+          "left");
+      g_assert_cmpuint (seen->camera, ==, 1);
+    } else if (!strstr (error->message, cases[i].says)) {
+      g_error ("“%s” misses “%s”", error->message, cases[i].says);
+    }
+  }
+}
+
 static void
 test_names (Fixture * f, gconstpointer data)
 {
@@ -463,7 +522,7 @@ test_no_grid (Fixture * f, gconstpointer data)
   for (guint i = 0; i < 3; i++) {
     mesh->columns = i == 1 ? COLUMNS : 0;
     mesh->rows = i == 2 ? ROWS : 0;
-    g_assert_false (gst_cloth_io_observations_load (f->folder, mesh,
+    g_assert_false (gst_cloth_io_observations_load (f->folder, NULL, mesh,
             &observations, &error));
     g_assert_nonnull (strstr (error->message, "grid"));
     g_clear_error (&error);
@@ -503,14 +562,14 @@ test_of_take (Fixture * f, gconstpointer data)
       end_file (f, "left");
     } else if (i == 2) {
       write_file (f, "observations/left.obs", "x", 1);
-      g_assert_false (gst_cloth_io_observations_load_take (take, &observations,
-              &error));
+      g_assert_false (gst_cloth_io_observations_load_take (take, NULL,
+              &observations, &error));
       g_assert_null (observations);
       g_assert_nonnull (error);
       break;
     }
-    g_assert_true (gst_cloth_io_observations_load_take (take, &observations,
-            &error));
+    g_assert_true (gst_cloth_io_observations_load_take (take, NULL,
+            &observations, &error));
     g_assert_true ((observations != NULL) == (i == 1));
     sha256 = cloth_take_sha256 (take, &error);
     g_assert_no_error (error);
@@ -743,7 +802,8 @@ main (int argc, char **argv)
     {"none", test_none}, {"squares", test_squares}, {"dots", test_dots},
     {"matches", test_matches}, {"silhouettes", test_silhouettes},
     {"other-silhouette", test_other_silhouette}, {"runs", test_runs},
-    {"others", test_others}, {"no-rig", test_no_rig},
+    {"others", test_others}, {"no-rig", test_no_rig}, {"other-rig",
+        test_other_rig},
     {"names", test_names}, {"no-grid", test_no_grid},
     {"of-take", test_of_take}, {"shrinking", test_shrinking},
     {"cut-off", test_cut_off}, {"sizes", test_sizes},

@@ -59,7 +59,7 @@ open_take (const gchar * folder)
   g_assert_true ((scene == NULL) == (scene_error != NULL));
   if (scene)
     g_assert_true (cloth_scene_check (scene, NULL));
-  g_assert_true (gst_cloth_io_observations_load_take (take, &observations,
+  g_assert_true (gst_cloth_io_observations_load_take (take, NULL, &observations,
           &error) == (error == NULL));
   cloth_observations_free (observations);
   hash = cloth_take_sha256 (take, NULL);

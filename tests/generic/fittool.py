@@ -120,7 +120,7 @@ for code, says, arguments in (
         (1, 'no free numbers', ('fit', take, '--model', frozen, '--output', out)),
         (1, 'positions.npy', ('fit', bare, '--model', model, '--output', out)),
         (1, '--model', ('fit', take, '--model', folder + '/none.json', '--output', out)),
-        (1, "not the cameras of the take's own", ('fit', take, '--model', model, '--output', out,
+        (1, 'is of no camera of the rig', ('fit', take, '--model', model, '--output', out,
                                                   '--rig', data + '/dots_ring8/rig.json')),
         (2, 'name the takes', ('fit', '--model', model, '--output', out)),
         (2, '--output', ('fit', take, '--model', model)),
@@ -129,6 +129,15 @@ for code, says, arguments in (
     done = run(*arguments)
     check(done.returncode == code and says in done.stderr and 'CRITICAL' not in done.stderr,
           'refused: ' + done.stderr.strip())
+
+# A rig of the command line stands for the take's own, in whatever order it has the cameras.
+os.rename(take + '/rig.json', folder + '/rig.json')
+with open(folder + '/rig.json', encoding='utf-8') as file:
+    turned = json.load(file)
+turned['cameras'].reverse()
+for says, rig in (('no rig.json', []), ('no free numbers', ['--rig', write(folder + '/turned.json', turned)])):
+    done = run('fit', take, '--model', frozen, '--output', out, *rig)
+    check(done.returncode == 1 and says in done.stderr, 'a take without a rig: ' + done.stderr.strip())
 
 shutil.rmtree(folder)
 print('%d faults' % len(faults))

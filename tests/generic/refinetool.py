@@ -137,7 +137,7 @@ check((off[:, 0] < right[:, 0].max() + 5e-4).all(), 'directions: %.3f mrad at mo
 for rig_file, where, says in (
         (os.path.join(data, 'opencv_boards/none.json'), take, 'none.json'),
         (ring + '/rig.json', os.path.join(data, 'take_drag'), 'no folder observations'),
-        (os.path.join(data, 'dots_ring8/rig.json'), take, 'has not the cameras')):
+        (os.path.join(data, 'dots_ring8/rig.json'), take, 'of no camera of the rig')):
     os.path.exists(folder + '/refined.json') and os.unlink(folder + '/refined.json')
     done = run(rig_file, where)
     check(done.returncode == 1 and says in done.stderr

@@ -163,8 +163,8 @@ test_film (void)
   record (folder);
   take = cloth_take_open (folder, &error);
   g_assert_no_error (error);
-  gst_cloth_io_observations_load (folder, cloth_take_get_topology (take),
-      &observations, &error);
+  gst_cloth_io_observations_load (folder, NULL,
+      cloth_take_get_topology (take), &observations, &error);
   g_assert_no_error (error);
   g_assert_nonnull (observations);
   check_points (film, observations);
