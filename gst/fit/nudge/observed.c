@@ -7,8 +7,8 @@
  *   each camera.
  * Assumption: along a lone ray, and along an outline, the cloth is where a simulation is that all
  *   rays and outlines draw.
- * Formula: places on lone rays and the simulation are found in turn, until a turn moves no place by
- *   as much as the recording's noise, RMS: y = c + d dᵀ (x − c), x = simulation drawn to y with the
+ * Formula: places on lone rays and the simulation are found in turn, until a turn moves places by less
+ *   than the recording's noise, RMS, or no longer by much less than the one before: y = c + d dᵀ (x − c), x = simulation drawn to y with the
  *   weights of ClothRecordingNoise, which draw across the rays only. On outlines, with Λ = Σ g gᵀ/s²
  *   over the cameras, y = x + Λ⁺ Σ g δ/s²; s is what outlines are off at vertices that were located.
  * Reference: Hasler, Asbach, Rosenhahn, Ohm and Seidel, Physically based tracking of cloth, 2006,
@@ -32,6 +32,9 @@
 #define MOST_PLACES (1u << 25)
 /* Most turns of places and simulation. */
 #define MOST_TURNS 8
+/* A turn that moves places by more than this share of what the last one did: what is left is what simulations
+ * differ by as their numbers are rounded. */
+#define STALLED 0.5
 /* Least turns where outlines are followed: the cloth comes to them by and by. */
 #define LEAST_TURNS 4
 /* Standard deviation of what is cut to whole pixels. */
@@ -545,6 +548,7 @@ cloth_recording_new_observed (ClothTake * take,
   g_autoptr (ClothRecording) r = recording_new (take, error);
   g_auto (Maker) m = { NULL };
   g_autofree gdouble *x = NULL;
+  gdouble last = INFINITY;
 
   *counts = (ClothObservedCounts) {
   0};
@@ -562,8 +566,10 @@ cloth_recording_new_observed (ClothTake * take,
 
     if (isnan (moved))
       return NULL;
-    if (moved < r->sigma && (!m.outline || k + 1 >= LEAST_TURNS))
+    if ((moved < r->sigma || moved > STALLED * last)
+        && (!m.outline || k + 1 >= LEAST_TURNS))
       break;
+    last = moved;
   }
   counts->along = find_share_along (&m);
   return g_steal_pointer (&r);
