@@ -74,9 +74,8 @@ cloth_lane_stage (ClothLaneState * state, const ClothLaneStage * stage,
   for (guint k = 0; k < 3; k++) {
     ClothLane v = state->v[particle][k];
 
-    state->v[particle][k] = stage->mu * v + stage->nu *
+    state->last_v[particle][k] = stage->mu * v + stage->nu *
         state->last_v[particle][k] + (force[k] * w + (motion->g[k] -
             motion->alpha * v));
-    state->last_v[particle][k] = v;
   }
 }

@@ -51,6 +51,16 @@ find_others (ClothLaneState * state)
   state->others = f;
 }
 
+/* What a stage wrote in place of the velocities before the last ones becomes the last ones. */
+static void
+exchange (ClothLaneState * state)
+{
+  ClothLane3 *v = state->v;
+
+  state->v = state->last_v;
+  state->last_v = v;
+}
+
 static void
 stage (ClothLaneState * state, ClothLane h, gdouble mu, gdouble nu)
 {
@@ -84,6 +94,7 @@ void CLOTH_LANE_NAME (cloth_lane_staged) (ClothLaneState * state)
       CLOTH_LANE_NAME (cloth_lane_grid_stage) (state, h, mu, nu);
     else
       stage (state, h, mu, nu);
+    exchange (state);
     hold (state);
   }
   for (guint i = 0; i < state->n; i++)
