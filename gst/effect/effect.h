@@ -63,6 +63,7 @@ typedef enum {
  * @one_sided: nature has it on one side of @null_value only, that of @min < @max
  * @shapes: it only shapes the effect and means nothing at the null of the others: a
  *   diagnosis leaves it where it is
+ * @moment: it is a time on the scene's clock; lanes have it from the first frame on, as clocks may have begun long ago
  * @n_tried: number of @tried
  * @tried: where to leave it, one trial each; none: at @null_value. Parameters of one effect that
  *   are tried have as many, which belong together
@@ -79,6 +80,7 @@ typedef struct {
   gdouble prior;
   gboolean one_sided;
   gboolean shapes;
+  gboolean moment;
   guint n_tried;
   gdouble tried[CLOTH_EFFECT_MAX_TRIED];
   const gchar *blurb;

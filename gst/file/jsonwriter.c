@@ -48,7 +48,9 @@ add_number (ClothJsonWriter * writer, gdouble value)
     g_string_append (writer->text, "null");
     return;
   }
-  for (guint n = 7; n <= 17; n++) {
+  /* of what is large thousandths stay: times may count from 1970 */
+  for (guint n = (guint) CLAMP (3. + ceil (log10 (fabs (value))), 7., 17.);
+      n <= 17; n++) {
     g_snprintf (format, sizeof format, "%%.%ug", n);
     g_ascii_formatd (digits, sizeof digits, format, value == 0 ? 0 : value);
     if (!writer->exact || g_ascii_strtod (digits, NULL) == value)

@@ -71,7 +71,6 @@ typedef struct
   GArray *lone;
   ClothOutline *outline;        /* NULL: there are no silhouettes */
   gboolean *outlined;           /* places of which only outlines tell */
-  gfloat *start;                /* where the take says that the cloth starts, NaN where not; or NULL */
   ClothObservedCounts *counts;
 } Maker;
 
@@ -84,7 +83,6 @@ maker_clear (Maker * m)
   g_clear_pointer (&m->lone, g_array_unref);
   g_clear_pointer (&m->outline, cloth_outline_free);
   g_free (m->outlined);
-  g_free (m->start);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Maker, maker_clear);
@@ -108,8 +106,8 @@ maker_init (Maker * m, ClothTake * take, ClothRecording * r,
   *m = (Maker) {
   observations, r,.n_cameras = rig->n_cameras,.counts = counts};
   if (cloth_take_get_n_positions (take) > 0) {
-    m->start = g_new (gfloat, 3 * (gsize) r->n);
-    if (!cloth_take_read_positions (take, 0, m->start, error))
+    r->start = g_new (gfloat, 3 * (gsize) r->n);
+    if (!cloth_take_read_positions (take, 0, r->start, error))
       return FALSE;
   }
   m->views = cloth_views_new (observations, (r->times[r->n_frames - 1] -
@@ -287,7 +285,7 @@ guess (Maker * m, GError ** error)
   ClothRecording *r = m->r;
   const gsize row = 3 * (gsize) r->n;
 
-  if (m->counts->triangulated == 0 && !m->start) {
+  if (m->counts->triangulated == 0 && !r->start) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: no "
         "two cameras see the same vertex at a time, so nothing says where the "
         "cloth starts; give its places in the first frame as positions.npy "
@@ -324,10 +322,6 @@ finish (Maker * m, GError ** error)
   m->counts->torn = cloth_recording_remove_torn (r);
   cloth_recording_open_paths (r);
   cloth_recording_interpolate (r);
-  /* rather than what cameras made of it */
-  for (gsize i = 0; m->start && i < 3 * (gsize) r->n; i++)
-    if (isfinite (m->start[i]))
-      r->y[i] = m->start[i];
   if (!cloth_recording_find_paths (r, error))
     return FALSE;
   cloth_recording_differentiate (r);
@@ -430,6 +424,7 @@ draw_to_outlines (Maker * m, const gdouble * x)
   g_autoptr (GArray) list = g_array_new (FALSE, FALSE, sizeof (Told));
   const gdouble px = look_at_outlines (m, x, list);
 
+  r->simulated = TRUE;
   for (gsize at = r->n; at < (gsize) r->n * r->n_frames; at++)
     if (r->seen[at] == 0.)
       memcpy (r->y + 3 * at, x + 3 * at, 3 * sizeof (gdouble));

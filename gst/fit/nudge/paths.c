@@ -41,6 +41,8 @@
 #define SETTLED 1e-4
 /* A path is not known better, m. */
 #define LOGGED 1e-4
+/* How far off a knot may be that nothing tells of, m. */
+#define FARTHEST 1.
 /* Time constants after which springs have forgotten, and how far a B-spline reaches to a side, knots. */
 #define FORGOTTEN 3.
 #define REACH 2.
@@ -455,6 +457,9 @@ add_prior (Paths * p)
       const gdouble share = p->frame_s / (p->knot_s * sd * sd);
       guint first = first_knot (p, f);
 
+      if (!cloth_held_holds (&g_array_index (p->r->scene->held, ClothHeld,
+                  p->paths[path]), p->r->times[f]))
+        continue;
       for (guint k = first; k < MIN (first + N_KNOTS, p->n_knots); k++)
         for (guint c = 0; c < 3; c++) {
           const guint i = k * each + 3 * path + c;
@@ -479,8 +484,8 @@ solve_for (Paths * p, gdouble variance)
     p->normal[k] = p->data[k] / variance;
   for (guint k = 0; k < all; k++) {
     p->change[k] = p->right[k] / variance;
-    /* knots beyond the ends */
-    CLOTH_BAND (p->normal, bandwidth (p), k, k) += 1. / (p->knot_s * p->knot_s);
+    /* knots beyond the ends, and where no clamp holds */
+    CLOTH_BAND (p->normal, bandwidth (p), k, k) += 1. / (FARTHEST * FARTHEST);
   }
   add_prior (p);
   if (!cloth_band_factor (all, bandwidth (p), p->normal))
@@ -545,10 +550,11 @@ move (Paths * p)
     add_splines (p, scene->clamps, u / 3, u % 3, 0, 1, p->change + u,
         unknowns_of_knot (p));
   for (gsize k = 0; k < size; k++) {
-    /* what was logged stays */
+    /* what was logged stays, and what is behind a clamp's last frame */
     if (scene->clamps_sd[k / 3] == 0.)
       scene->clamps[k] = before[k];
-    sum += pow (scene->clamps[k] - before[k], 2.);
+    else
+      sum += pow (scene->clamps[k] - before[k], 2.);
   }
   return sqrt (sum / (p->r->n_frames * p->n_paths));
 }
@@ -582,7 +588,8 @@ find_deviations (Paths * p, gdouble * sd)
 static void
 take_along (ClothRecording * r)
 {
-  cloth_recording_interpolate (r);
+  if (!r->simulated)
+    cloth_recording_interpolate (r);
   cloth_recording_place_held (r);
   cloth_recording_differentiate (r);
 }

@@ -266,11 +266,13 @@ cut_loose (Bridge * b)
  * it a vertex moves evenly; before the first and after the last one it moves as its
  * neighbours in the mesh do, which keeps the cloth whole: a simulation that starts from a
  * crumpled patch would burst. One that would begin torn off begins between its neighbours.
+ * Where the first frame is known otherwise the cloth is there.
  */
 void
 cloth_recording_interpolate (ClothRecording * recording)
 {
-  guint n = recording->n;
+  const guint n = recording->n;
+  const gfloat *start = recording->start;
   g_auto (Bridge) b = { recording, g_new (gint, n), g_new (gint, n) };
 
   b.clamp = g_new (gint, n);
@@ -294,4 +296,7 @@ cloth_recording_interpolate (ClothRecording * recording)
     start_adrift (&b);
   for (guint frame = 1; frame < recording->n_frames; frame++)
     carry (&b, frame - 1, frame);
+  for (gsize i = 0; start && i < 3 * (gsize) n; i++)
+    if (isfinite (start[i]))
+      recording->y[i] = start[i];
 }

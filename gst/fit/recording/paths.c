@@ -163,12 +163,14 @@ find_data (Path * p, guint held)
     const gboolean logged = scene->clamps_sd[k] == 0.;
     gdouble *to = p->information + 6 * (gsize) f, near;
 
-    cloth_vec3_subtract (logged ? scene->clamps + 3 * k : r->y + 3 * at,
-        p->origin, p->y + 3 * (gsize) f);
     memset (to, 0, 6 * sizeof *to);
+    memset (p->y + 3 * (gsize) f, 0, 3 * sizeof *p->y);
     p->unsure[f] = 0.;
+    /* what stands there is no place of a clamp */
     if (!is_held (r, held, f))
       continue;
+    cloth_vec3_subtract (logged ? scene->clamps + 3 * k : r->y + 3 * at,
+        p->origin, p->y + 3 * (gsize) f);
     if (logged) {
       add_even (to, 1. / (ROUNDING * ROUNDING));
       n++;

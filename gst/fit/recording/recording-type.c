@@ -60,6 +60,7 @@ cloth_recording_free (ClothRecording * recording)
   g_free (recording->velocity);
   g_free (recording->targets);
   g_free (recording->seen);
+  g_free (recording->start);
   cloth_recording_noise_unref (recording->noise);
   g_free (recording);
 }

@@ -36,6 +36,9 @@ typedef struct {
  * @targets: (nullable): what draws a simulation in place of @y, on straight lines from frame to frame
  * @seen: 1 where a vertex was seen, less where outlines alone tell of it, which draw less strongly, 0 where
  *   nothing does, [n_frames][n]
+ * @start: (nullable): where the cloth is in the first frame, [n][3], NaN where that isn't known, rather than what
+ *   was seen there
+ * @simulated: places that nobody saw are where a simulation has them, and no bridges
  */
 typedef struct {
   gchar *name;
@@ -49,6 +52,8 @@ typedef struct {
   gdouble *velocity;
   gdouble *targets;
   gdouble *seen;
+  gfloat *start;
+  gboolean simulated;
 } ClothRecording;
 
 ClothRecordingNoise *cloth_recording_noise_new (gsize n);

@@ -34,8 +34,8 @@ const ClothEffect cloth_effect_clamp_slip = {
     {.name = "z", .unit = "m", .null_value = 0, .min = -0.5, .max = 0.5,
         .prior = 0.01,
         .blurb = "Displacement along z"},
-    {.name = "time", .unit = "s", .null_value = 0, .min = -1000000.0, .max = 1000000.0,
-        .prior = 1, .shapes = TRUE,
+    {.name = "time", .unit = "s", .null_value = 0, .min = -1e11, .max = 1e11,
+        .prior = 1, .shapes = TRUE, .moment = TRUE,
         .blurb = "When it began; without displacement it means nothing"},
     {.name = "held", .unit = "1", .null_value = -1, .min = -1, .max = 999999,
         .prior = 1, .shapes = TRUE,
@@ -56,8 +56,8 @@ clamp (const ClothLaneState * state, const ClothLaneEffect * effect,
     guint held, gdouble time_s, ClothLane position[3])
 {
   ClothLane zero = cloth_lane_set (0.), one = cloth_lane_set (1.);
-  ClothLane share = (cloth_lane_set (time_s) - effect->p[3]) *
-      cloth_lane_set (1. / SLIP);
+  ClothLane share = (cloth_lane_set (time_s - state->body->times[0]) -
+      effect->p[3]) * cloth_lane_set (1. / SLIP);
   ClothMask which = cloth_lane_equal (effect->p[4], cloth_lane_set (held)) |
       cloth_lane_less (effect->p[4], zero);
 

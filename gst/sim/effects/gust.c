@@ -68,13 +68,13 @@ typedef struct
   ClothRandom random;
 } Gust;
 
-/* Draws the process up to the knot at or after the state's time, counted from 0 s. */
+/* Draws the process up to the knot at or after the state's time, counted from the first frame. */
 static ClothLane
 draw (ClothLaneState * state, ClothLaneEffect * effect)
 {
   Gust *gust = effect->state;
   ClothLane keep, kick;
-  gdouble knots = MAX (state->time, 0.) / KNOT;
+  gdouble knots = MAX (state->time - state->body->times[0], 0.) / KNOT;
 
   if (gust->next && knots + 1. < (gdouble) gust->next)
     gust->next = 0;

@@ -130,9 +130,13 @@ load_effect (ClothLaneState * state, const ClothModel * const *models,
     const gdouble *values = find_values (models[l], part->effect);
 
     there |= values != NULL;
-    for (guint k = 0; k < part->effect->n_parameters; k++)
-      CLOTH_LANE_AT (&effect->p[k], l) = (ClothReal) (values ? values[k] :
-          part->effect->parameters[k].null_value);
+    for (guint k = 0; k < part->effect->n_parameters; k++) {
+      const ClothEffectParameter *p = &part->effect->parameters[k];
+
+      CLOTH_LANE_AT (&effect->p[k], l) =
+          (ClothReal) ((values ? values[k] : p->null_value) -
+          (p->moment ? state->body->times[0] : 0.));
+    }
   }
   if (!there)
     return;
@@ -598,8 +602,8 @@ group_set_targets (gpointer group, guint lane, guint n,
       continue;
     CLOTH_LANE_AT (&t->gain, l) = (ClothReal) gains[of[l]];
     CLOTH_LANE_AT (&t->damping, l) = (ClothReal) dampings[of[l]];
-    CLOTH_LANE_AT (&t->now, l) = (ClothReal) t_now;
-    CLOTH_LANE_AT (&t->next, l) = (ClothReal) t_next;
+    t->now[l] = t_now;
+    t->next[l] = t_next;
   }
 }
 

@@ -34,7 +34,7 @@ typedef struct
   ClothLane *weight;
   ClothLane (*matrix)[6];       /* NULL: none has one */
   ClothLane gain, damping;
-  ClothLane now, next;
+  gdouble now[CLOTH_N_LANES], next[CLOTH_N_LANES];      /* s */
 } ClothLaneTargets;
 
 /* A pull, whose numbers all lanes share: where it is on the cloth, what its corners feel of a
@@ -374,15 +374,19 @@ cloth_lane_path (const ClothLaneState * state, guint held, guint lane,
       state->body->clamps, held, time_s, place);
 }
 
-/* Where a time is on the observer's way from now to next. */
+/* Where a time is on the observer's way from now to next. Clocks may have begun long ago, so that only differences
+ * of times are small numbers. */
 CLOTH_LANE_INLINE ClothLane
 cloth_lane_targets_share (const ClothLaneState * state, gdouble time_s)
 {
   const ClothLaneTargets *t = &state->targets;
-  ClothLane span = t->next - t->now, zero = cloth_lane_set (0.);
+  ClothLane share = cloth_lane_set (0.);
 
-  return cloth_lane_select (cloth_lane_less (zero, span),
-      (cloth_lane_set (time_s) - t->now) / span, zero);
+  for (guint l = 0; l < CLOTH_N_LANES; l++)
+    if (t->next[l] > t->now[l])
+      CLOTH_LANE_AT (&share, l) =
+          (ClothReal) ((time_s - t->now[l]) / (t->next[l] - t->now[l]));
+  return share;
 }
 
 /* A velocity at the time of the places, to second order, from what it is and was before the last
