@@ -93,6 +93,7 @@ typedef struct
   guint n_held;
   ClothBodyHeld *held;
   guint n_frames;
+  gdouble epoch;                /* of the first frame on the scene's clock, s: all times here count from it */
   gdouble *times;
   gdouble *clamps;              /* [frame][held][3] */
   gdouble frame_s;              /* usual distance of frames */

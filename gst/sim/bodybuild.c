@@ -212,7 +212,10 @@ take_clamps (ClothBody * body, const ClothScene * scene)
   gsize n_path = 3 * (gsize) scene->n_frames * scene->held->len;
 
   body->n_frames = scene->n_frames;
-  body->times = g_memdup2 (scene->times, scene->n_frames * sizeof (gdouble));
+  body->epoch = scene->times[0];
+  body->times = g_new (gdouble, scene->n_frames);
+  for (guint f = 0; f < scene->n_frames; f++)
+    body->times[f] = scene->times[f] - body->epoch;
   body->clamps = g_memdup2 (scene->clamps, n_path * sizeof (gdouble));
   body->frame_s = scene->n_frames > 1 ?
       (scene->times[scene->n_frames - 1] - scene->times[0]) /
@@ -224,13 +227,12 @@ take_clamps (ClothBody * body, const ClothScene * scene)
     ClothBodyHeld *h = &body->held[i];
 
     h->particle = body->particle[held->vertex];
-    h->from_s = held->from_s;
-    h->until_s = held->until_s;
-    while (h->first + 1 < body->n_frames
-        && body->times[h->first] < held->from_s)
+    h->from_s = held->from_s - body->epoch;
+    h->until_s = held->until_s - body->epoch;
+    while (h->first + 1 < body->n_frames && body->times[h->first] < h->from_s)
       h->first++;
     h->last = body->n_frames - 1;
-    while (h->last > h->first && body->times[h->last] >= held->until_s)
+    while (h->last > h->first && body->times[h->last] >= h->until_s)
       h->last--;
   }
 }

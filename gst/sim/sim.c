@@ -43,7 +43,7 @@ struct _ClothSim
   ClothSimGroup *groups;        /* those with the most to do first */
   guint *group_of;              /* of each model */
   guint *rank_of;               /* of each model: where it is in the groups' order */
-  gdouble time;
+  gdouble time;                 /* from the first frame on, s */
   gdouble fixed_step;           /* of the models, 0 = automatic */
   gdouble time_step;
   gdouble strained_step;        /* of the last advance, in equal steps */
@@ -271,7 +271,7 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
   sim->adaptive = sim->implicit && sim->fixed_step == 0.;
   /* twice as long is four times as far off */
   sim->patience = sim->numerics->step_factor * sim->numerics->step_factor;
-  sim->time = sim->body->times[0];
+  sim->time = 0.;
   for (guint i = 0; i < G_N_ELEMENTS (sim->scratch); i++)
     sim->scratch[i] = g_new0 (gdouble, 3 * (gsize) MAX (sim->n_vertices,
             sim->body->n_particles));
@@ -443,8 +443,10 @@ find_strained_step (ClothSim * sim)
 void
 cloth_sim_advance (ClothSim * sim, gdouble until_s)
 {
-  gdouble span = until_s - sim->time;
+  gdouble span;
 
+  until_s -= sim->body->epoch;
+  span = until_s - sim->time;
   if (!(span > 0.) || !isfinite (span))
     return;
   if (sim->stale)
@@ -469,7 +471,7 @@ cloth_sim_advance (ClothSim * sim, gdouble until_s)
 gdouble
 cloth_sim_get_time (const ClothSim * sim)
 {
-  return sim->time;
+  return sim->time + sim->body->epoch;
 }
 
 /* @sim: a simulation
@@ -583,7 +585,7 @@ cloth_sim_set_state (ClothSim * sim, guint model, const gdouble * positions,
   else
     memset (sim->scratch[1], 0,
         3 * (gsize) sim->body->n_particles * sizeof (gdouble));
-  set_particles (sim, model, 0., time_s);
+  set_particles (sim, model, 0., time_s - sim->body->epoch);
 }
 
 /* @sim: a simulation
@@ -608,7 +610,7 @@ cloth_sim_copy_state (ClothSim * sim, guint model, const ClothSim * from,
   to_particles (sim, from->scratch[2], sim->scratch[0]);
   to_particles (sim, from->scratch[3], sim->scratch[1]);
   set_particles (sim, model, group->backend->lag (group->lanes, lane),
-      from->time);
+      from->time + (from->body->epoch - sim->body->epoch));
 }
 
 /* @sim: a simulation
@@ -625,7 +627,7 @@ cloth_sim_get_state (const ClothSim * sim, guint model, gdouble * since_s)
   gdouble since = group->backend->diverged (group->lanes, lane);
 
   if (since_s)
-    *since_s = since;
+    *since_s = since + sim->body->epoch;
   return isnan (since) ? CLOTH_SIM_OK : CLOTH_SIM_DIVERGED;
 }
 
@@ -729,7 +731,7 @@ draw (ClothSim * sim, const ClothSimGroup * group, guint lane, guint n,
       (const gdouble * const *) sim->scratch, sim->scratch[4],
       matrices ? sim->matrices : NULL,
       sim->gains + group->first + lane, sim->dampings + group->first + lane,
-      t_now, t_next);
+      t_now - sim->body->epoch, t_next - sim->body->epoch);
 }
 
 /* @sim: a simulation
@@ -900,7 +902,8 @@ cloth_sim_set_pulls (ClothSim * sim, const ClothPull * pulls, guint n,
     if (sim->groups[i].backend->set_pulls (sim->groups[i].lanes,
             (const ClothPull *) sim->pulls->data, sim->pulls->len, &own,
             sim->pull_gains + sim->groups[i].first,
-            sim->pull_dampings + sim->groups[i].first, t_now, t_next))
+            sim->pull_dampings + sim->groups[i].first,
+            t_now - sim->body->epoch, t_next - sim->body->epoch))
       sim->stale = TRUE;
   if (!sound || n == 0)
     return sound;

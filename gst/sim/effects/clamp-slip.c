@@ -56,8 +56,8 @@ clamp (const ClothLaneState * state, const ClothLaneEffect * effect,
     guint held, gdouble time_s, ClothLane position[3])
 {
   ClothLane zero = cloth_lane_set (0.), one = cloth_lane_set (1.);
-  ClothLane share = (cloth_lane_set (time_s - state->body->times[0]) -
-      effect->p[3]) * cloth_lane_set (1. / SLIP);
+  ClothLane share = (cloth_lane_set (time_s) - effect->p[3]) *
+      cloth_lane_set (1. / SLIP);
   ClothMask which = cloth_lane_equal (effect->p[4], cloth_lane_set (held)) |
       cloth_lane_less (effect->p[4], zero);
 

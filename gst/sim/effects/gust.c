@@ -74,7 +74,7 @@ draw (ClothLaneState * state, ClothLaneEffect * effect)
 {
   Gust *gust = effect->state;
   ClothLane keep, kick;
-  gdouble knots = MAX (state->time - state->body->times[0], 0.) / KNOT;
+  gdouble knots = MAX (state->time, 0.) / KNOT;
 
   if (gust->next && knots + 1. < (gdouble) gust->next)
     gust->next = 0;

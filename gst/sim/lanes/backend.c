@@ -135,7 +135,7 @@ load_effect (ClothLaneState * state, const ClothModel * const *models,
 
       CLOTH_LANE_AT (&effect->p[k], l) =
           (ClothReal) ((values ? values[k] : p->null_value) -
-          (p->moment ? state->body->times[0] : 0.));
+          (p->moment ? state->body->epoch : 0.));
     }
   }
   if (!there)
@@ -325,7 +325,7 @@ group_new (const ClothBody * body, const ClothModel * const *models,
           cloth_lane_set (body->velocities[3 * i + k]);
     }
   }
-  state->time = body->times[0];
+  state->time = 0.;
   reset_effects (state, cloth_lane_equal (state->alpha, state->alpha));
   keep_sound (state);
   return state;

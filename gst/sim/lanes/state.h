@@ -191,7 +191,7 @@ typedef struct
   ClothLaneGrid *grid;          /* NULL: another mesh, or the mass–spring model */
   ClothLaneImplicit *implicit;  /* NULL: leapfrog */
 
-  gdouble time;                 /* s */
+  gdouble time;                 /* from the first frame on, s */
   gdouble dt;                   /* of the running step, s */
   guint steps_left;             /* after it, before anybody asks */
   /* what a change of the step's last velocity changes the places by, over it, s: dt but
@@ -374,8 +374,7 @@ cloth_lane_path (const ClothLaneState * state, guint held, guint lane,
       state->body->clamps, held, time_s, place);
 }
 
-/* Where a time is on the observer's way from now to next. Clocks may have begun long ago, so that only differences
- * of times are small numbers. */
+/* Where a time is on the observer's way from now to next. */
 CLOTH_LANE_INLINE ClothLane
 cloth_lane_targets_share (const ClothLaneState * state, gdouble time_s)
 {
