@@ -24,6 +24,8 @@
 #define WINDOW CLOTH_RECORDING_WINDOW
 G_STATIC_ASSERT (WINDOW == 2 * CLOTH_OBSERVER_LATENCY + 1);
 #define MASKS (1u << WINDOW)
+/* A window's last frame may be so much of a frame early. */
+#define EARLY 0.25
 
 /* The two copies of the model in the simulation. */
 #define NUDGED 0
@@ -44,6 +46,7 @@ struct _ClothObserver
   ClothSim *sim;
   ClothSim *forecast;           /* without springs: only for frames of rays */
   gdouble *scene_start;
+  gdouble fps;                  /* of the scene */
   ClothTopology *topology;
   ClothOutliers *outliers;
   guint64 n_pushed, n_popped;
@@ -99,6 +102,7 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
   self->sim = g_steal_pointer (&sim);
   self->forecast = forecast;
   self->n = scene->topology->n_vertices;
+  self->fps = scene->fps;
   self->topology = cloth_topology_copy (scene->topology);
   self->outliers = cloth_outliers_new (scene->topology);
   n = 3 * (gsize) self->n;
@@ -483,7 +487,7 @@ cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
   if (self->n_popped == 0) {
     open_window (self, frame->time);
   } else if (frame->time >= self->window_from +
-      self->options.window_s * (1 - 1e-6)) {
+      self->options.window_s - EARLY / self->fps) {
     close_window (self);
     open_window (self, frame->time);
   }

@@ -24,6 +24,8 @@
 
 /* Models that are computed side by side, as narrow lanes have them. */
 #define MODELS_A_GROUP 8.
+/* A window's last frame may be so much of a frame late. */
+#define LATE 0.25
 
 /* Models that one ClothSim can step together: those that agree in what it shares, and need steps of
  * about the same length, as it takes the shortest for all. */
@@ -639,11 +641,14 @@ guint *
 cloth_rollout_list_windows (const ClothRecording * recording, gdouble window_s)
 {
   guint *windows = g_new0 (guint, recording->n_frames);
+  const guint last = recording->n_frames - 1;
+  const gdouble slack = LATE * (recording->times[last] -
+      recording->times[0]) / MAX (last, 1);
   guint begin = 0;
 
   for (guint frame = 1; frame < recording->n_frames; frame++) {
     gboolean over = frame > begin + 1 && !(recording->times[frame] -
-        recording->times[begin] < window_s + 1e-9);
+        recording->times[begin] < window_s + slack);
 
     windows[frame] = windows[frame - 1] + over;
     if (over)
