@@ -477,6 +477,61 @@ test_copy (void)
   }
 }
 
+/* Clocks that began in 1970 count as those that begin with the scene: clamps, springs, slips and gusts, whose times
+ * are moments, in single numbers too. Frames are a 64th of a second, which numbers as large hold exactly. */
+static void
+test_epoch (gconstpointer data)
+{
+  const ClothSimOptions options = { GPOINTER_TO_UINT (data), 1,
+    CLOTH_SIMD_BEST, 0
+  };
+  const gdouble slip[5] = { 0.01, 0., 0.02, 0.25, -1. };
+  const gdouble gust[5] = { 2., 0.3, 40., 1.2, 0.1 };
+  gdouble *x[2] = { NULL };
+  const guint n = 9 * 10;
+
+  for (guint late = 0; late < 2; late++) {
+    const gdouble epoch = late ? ldexp (1., 31) : 0.;
+    g_autoptr (ClothScene) scene = sway_scene (9, 10);
+    g_autoptr (ClothModel) model = fabric ();
+    g_autoptr (ClothSim) sim = NULL;
+    g_autofree gdouble *y = g_memdup2 (scene->positions,
+        3 * n * sizeof (gdouble));
+    g_autofree gdouble *speed = g_new0 (gdouble, 3 * n);
+    g_autofree gdouble *weights = g_new (gdouble, n);
+    const ClothModel *models[1] = { model };
+    g_autoptr (GError) error = NULL;
+    gdouble values[5];
+
+    for (guint f = 0; f < scene->n_frames; f++)
+      scene->times[f] = epoch + f / 64.;
+    g_array_index (scene->held, ClothHeld, 1).until_s = epoch + 0.5;
+    memcpy (values, slip, sizeof values);
+    values[3] += epoch;
+    model->damping_stiffness = 1e-3;
+    cloth_model_set_effect (model, &cloth_effect_clamp_slip, values);
+    cloth_model_set_effect (model, &cloth_effect_gust, gust);
+    for (guint i = 0; i < n; i++)
+      weights[i] = i % 3 == 0;
+    sim = cloth_sim_new (scene, models, 1, &options, &error);
+    g_assert_no_error (error);
+    g_assert_cmpfloat (cloth_sim_get_time (sim), ==, epoch);
+    for (guint f = 0; f < 64; f++) {
+      const gdouble now = epoch + f / 64., next = epoch + (f + 1) / 64.;
+
+      cloth_sim_set_targets (sim, 0, y, y, speed, speed, weights, NULL, 50.,
+          8., now, next);
+      cloth_sim_advance (sim, next);
+      g_assert_cmpfloat (cloth_sim_get_time (sim), ==, next);
+    }
+    x[late] = positions_of (sim, 0);
+  }
+  g_assert_cmpmem (x[0], 3 * n * sizeof (gdouble), x[1],
+      3 * n * sizeof (gdouble));
+  g_free (x[0]);
+  g_free (x[1]);
+}
+
 /* Central differences over 0.4 s with steps of 1e-3 and 1e-5 agree within 10%, for the
  * parameters of the fabric in the takes. */
 static void
@@ -665,6 +720,9 @@ main (int argc, char **argv)
   g_test_add_data_func ("/sim/drawn-pulls", GUINT_TO_POINTER (2), test_drawn);
   g_test_add_func ("/sim/drawn-late", test_drawn_late);
   g_test_add_func ("/sim/copy", test_copy);
+  g_test_add_data_func ("/sim/epoch", GUINT_TO_POINTER (FALSE), test_epoch);
+  g_test_add_data_func ("/sim/epoch-single", GUINT_TO_POINTER (TRUE),
+      test_epoch);
   g_test_add_data_func ("/sim/targets",
       GUINT_TO_POINTER (CLOTH_INTEGRATOR_EXPLICIT), test_targets);
   g_test_add_data_func ("/sim/targets-implicit",
