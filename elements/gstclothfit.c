@@ -53,6 +53,7 @@
 #include "elements/gstclothproperties.h"
 #include "gst/cloth-io/points.h"
 #include "gst/file/file.h"
+#include "gst/fit/error.h"
 #include "gst/fit/synthesis/synthesis.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_fit_debug);
@@ -118,6 +119,12 @@ gst_cloth_fit_open (GstClothFollow * follow)
   if (!fitted)
     return TRUE;
   parent = g_path_get_dirname (fitted);
+  if (g_file_test (fitted, G_FILE_TEST_IS_DIR)) {
+    GST_ELEMENT_ERROR (follow, RESOURCE, OPEN_WRITE,
+        ("Can't write the fitted model: %s is a folder", fitted),
+        ("Set fitted= to a file."));
+    return FALSE;
+  }
   if (g_access (parent, W_OK) != 0) {
     GST_ELEMENT_ERROR (follow, RESOURCE, OPEN_WRITE,
         ("Can't write the fitted model: %s: %s", parent, g_strerror (errno)),
@@ -309,6 +316,11 @@ fit (GstClothFit * self, GError ** error)
     if (!take)
       return NULL;
     input.take = take;
+  } else if (!self->observations) {
+    /* the take of location is the scene; what it has of positions is another recording */
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
+        "no picture of the scene's time showed the cloth");
+    return NULL;
   }
   cloth_synthesis_options_init (&options);
   options.gain = self->settings.gain;
@@ -331,10 +343,10 @@ gst_cloth_fit_finish (GstClothFollow * follow)
   if (!self->settings.fitted)
     return;
   s = fit (self, &error);
-  if (!s || !isfinite (s->takes[0].after.windows)) {
-    if (s || !gst_cloth_follow_is_cancelled (follow))
+  if (!s) {
+    if (!gst_cloth_follow_is_cancelled (follow))
       GST_ELEMENT_ERROR (self, STREAM, FAILED, ("Can't fit the model: %s",
-              s ? "nothing of the cloth was seen" : error->message), (NULL));
+              error->message), (NULL));
     return;
   }
   json = cloth_model_to_json (s->model);

@@ -233,7 +233,7 @@ gst_follow_view_read (GstFollowView * view, GstElement * element,
     view->seen = TRUE;
   }
   *sequence = view->sequence++;
-  *offset_s = view->camera ? view->camera->offset_s : 0.;
+  *offset_s = gst_follow_view_get_offset (view);
   return view->rays;
 }
 
@@ -243,6 +243,12 @@ gst_follow_view_get_points (const GstFollowView * view,
 {
   *camera = view->camera;
   return view->shows ? &view->points->view : NULL;
+}
+
+gdouble
+gst_follow_view_get_offset (const GstFollowView * view)
+{
+  return view->camera ? view->camera->offset_s : 0.;
 }
 
 void
@@ -285,7 +291,9 @@ struct _GstFollowRecord
   ClothTakeWriter *writer;
   /* the scene's clamps, for a recording whose frames have times of their own */
   guint n_held, n_frames;
+  GArray *held;
   gdouble *times, *clamps;
+  guint after;                  /* the first frame that isn't before the last one's time */
   gfloat *row;
 };
 
@@ -307,6 +315,7 @@ gst_follow_record_new (const ClothTakeInfo * info, const ClothScene * scene,
   }
   record->n_held = scene->held->len;
   record->n_frames = scene->n_frames;
+  record->held = g_array_copy (scene->held);
   n = 3 * (gsize) record->n_held;
   record->times = g_memdup2 (scene->times,
       record->n_frames * sizeof *record->times);
@@ -318,24 +327,43 @@ gst_follow_record_new (const ClothTakeInfo * info, const ClothScene * scene,
   return record;
 }
 
-/* Between two logged places a clamp moves evenly, as in the simulation. */
+/* Where a clamp is logged in a frame; NULL: it doesn't hold then. */
+static const gdouble *
+find_logged (const GstFollowRecord * record, guint held, guint frame)
+{
+  return cloth_held_holds (&g_array_index (record->held, ClothHeld, held),
+      record->times[frame]) ?
+      record->clamps + 3 * ((gsize) frame * record->n_held + held) : NULL;
+}
+
+/* Between two logged places a clamp moves evenly. */
 static void
 find_clamps (GstFollowRecord * record, gdouble time)
 {
-  gsize n = 3 * (gsize) record->n_held;
-  guint after = 0;
-  const gdouble *a, *b;
-  gdouble share = 0;
+  const guint last = record->n_frames - 1;
+  guint before, after;
+  gdouble share = 0.;
 
-  while (after < record->n_frames && record->times[after] < time)
-    after++;
-  b = record->clamps + n * MIN (after, record->n_frames - 1);
-  a = record->clamps + n * (after > 0 ? after - 1 : 0);
-  if (after > 0 && after < record->n_frames)
-    share = (time - record->times[after - 1]) /
-        (record->times[after] - record->times[after - 1]);
-  for (gsize i = 0; i < n; i++)
-    record->row[i] = (gfloat) (a[i] + share * (b[i] - a[i]));
+  while (record->after < record->n_frames
+      && record->times[record->after] < time)
+    record->after++;
+  after = MIN (record->after, last);
+  before = record->after > 0 ? record->after - 1 : 0;
+  if (before < after)
+    share = (time - record->times[before]) /
+        (record->times[after] - record->times[before]);
+  for (guint i = 0; i < record->n_held; i++) {
+    const gdouble *a = find_logged (record, i, before);
+    const gdouble *b = find_logged (record, i, after);
+
+    /* of one that doesn't hold what stands there means nothing */
+    if (!a && !b)
+      a = b = record->clamps + 3 * ((gsize) after * record->n_held + i);
+    a = a ? a : b;
+    b = b ? b : a;
+    for (guint k = 0; k < 3; k++)
+      record->row[3 * i + k] = (gfloat) (a[k] + share * (b[k] - a[k]));
+  }
 }
 
 gboolean
@@ -381,6 +409,7 @@ gst_follow_record_free (GstFollowRecord * record)
   if (record->folder)
     remove_folder (record->folder);
   g_free (record->folder);
+  g_clear_pointer (&record->held, g_array_unref);
   g_free (record->times);
   g_free (record->clamps);
   g_free (record->row);

@@ -60,6 +60,8 @@ const ClothRays *gst_follow_view_read (GstFollowView * view,
  * showed nothing. @camera: whose it is. Both belong to @view. */
 const ClothTriangulateView *gst_follow_view_get_points (const GstFollowView *
     view, const ClothCamera ** camera);
+/* Seconds from the camera's clock to that of its rig; 0 as long as no picture named the camera. */
+gdouble gst_follow_view_get_offset (const GstFollowView * view);
 /* A new recording: no picture so far. */
 void gst_follow_view_restart (GstFollowView * view);
 /* Posts an error when no picture so far showed squares, dots or matches. */

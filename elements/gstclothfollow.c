@@ -54,6 +54,7 @@ typedef struct
   gdouble before;               /* how long those before that took, seconds */
   gdouble last_time;
   gboolean new_segment, warned;
+  GstCaps *refused;             /* NULL: none */
   gfloat *residuals, *sigmas;
   gfloat *positions;            /* as recorded by one camera */
   guint8 *states;
@@ -190,7 +191,8 @@ post_score (Follow * self, gboolean last)
   gst_element_post_message (self->element,
       gst_message_new_element (GST_OBJECT (self->element),
           gst_structure_new (self->klass->score,
-              "time", G_TYPE_UINT64, (guint64) (score.from_s * 1e9 + 0.5),
+              "time", G_TYPE_UINT64,
+              (guint64) (MAX (score.from_s, 0.) * 1e9 + 0.5),
               "duration", G_TYPE_UINT64,
               (guint64) ((score.to_s - score.from_s) * 1e9 + 0.5),
               "rms", G_TYPE_DOUBLE, score.rms,
@@ -390,6 +392,17 @@ let_pass (Follow * self, GstBuffer * buffer, gdouble time)
   return flow;
 }
 
+/* A segment that goes back begins a new recording. */
+static void
+check_segment (Follow * self, gdouble time)
+{
+  if (self->n_frames > 0 && time <= self->last_time && self->new_segment) {
+    GST_INFO_OBJECT (self->element, "back to %.3f s: a new recording", time);
+    restart (self);
+  }
+  self->new_segment = FALSE;
+}
+
 /* TRUE when it may be scored; else @flow says what became of the buffer. */
 static gboolean
 is_next (Follow * self, GstBuffer * buffer, gdouble time, GstFlowReturn * flow)
@@ -403,11 +416,6 @@ is_next (Follow * self, GstBuffer * buffer, gdouble time, GstFlowReturn * flow)
     *flow = GST_FLOW_ERROR;
     return FALSE;
   }
-  if (self->n_frames > 0 && time <= self->last_time && self->new_segment) {
-    GST_INFO_OBJECT (self->element, "back to %.3f s: a new recording", time);
-    restart (self);
-  }
-  self->new_segment = FALSE;
   if (is_in_scene (self, time) &&
       (self->n_frames == 0 || time > self->last_time))
     return TRUE;
@@ -454,6 +462,9 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
     gst_buffer_unref (buffer);
     return gst_cloth_damage_add (&self->settings.damage, self->element, error);
   }
+  time = find_time (self, buffer);
+  check_segment (self, time - (self->view ?
+          gst_follow_view_get_offset (self->view) : 0.));
   if (self->view) {
     rays = gst_follow_view_read (self->view, self->element, picture,
         &sequence, &offset_s, &error);
@@ -468,9 +479,11 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
   } else {
     sequence = gst_cloth_mesh_get_sequence (mesh);
   }
-  time = find_time (self, buffer) - offset_s;
-  if (!is_next (self, buffer, time, &flow))
+  time -= offset_s;
+  if (!is_next (self, buffer, time, &flow)) {
+    self->n_at_rate++;
     return flow;
+  }
   if (rays && !tell_picture (self, time)) {
     gst_buffer_unref (buffer);
     return GST_FLOW_ERROR;
@@ -498,6 +511,8 @@ finish (Follow * self)
   if (drain (self) != GST_FLOW_OK)
     return;
   post_score (self, TRUE);
+  if (self->refused)            /* that was told */
+    return;
   if (self->n_frames == 0)
     GST_ELEMENT_ERROR (self->element, STREAM, FAILED,
         ("The stream ended without a %s of the scene", get_noun (self)),
@@ -531,6 +546,16 @@ set_kind (Follow * self, gboolean observations)
   return observations == (self->view != NULL);
 }
 
+/* Caps that were refused come again before whatever comes next: the error was posted then. */
+static gboolean
+is_refused (Follow * self, GstCaps * caps)
+{
+  if (self->refused && gst_caps_is_equal (self->refused, caps))
+    return TRUE;
+  gst_caps_replace (&self->refused, caps);
+  return FALSE;
+}
+
 static gboolean
 set_caps (Follow * self, GstCaps * caps)
 {
@@ -539,10 +564,13 @@ set_caps (Follow * self, GstCaps * caps)
       GST_CLOTH_OBSERVATIONS_MEDIA_TYPE);
   gint fps_n = 0, fps_d = 1;
 
+  if (is_refused (self, caps))
+    return FALSE;
   if (!set_kind (self, observations) || !(observations ?
           gst_follow_view_set_caps (self->view, self->element, caps) :
           gst_follow_inputs_check_mesh (&self->inputs, self->element, caps)))
     return FALSE;
+  gst_caps_replace (&self->refused, NULL);
   gst_structure_get_fraction (s, "framerate", &fps_n, &fps_d);
   if (self->n_vertices == 0) {
     self->n_vertices = self->inputs.scene->topology->n_vertices;
@@ -583,6 +611,7 @@ flush (Follow * self)
   restart (self);
   gst_segment_init (&self->segment, GST_FORMAT_TIME);
   self->warned = FALSE;
+  gst_caps_replace (&self->refused, NULL);
   g_atomic_int_set (&self->cancelled, FALSE);
 }
 

@@ -47,7 +47,8 @@ typedef struct {
  * @record: a frame leaves; %FALSE when an error was posted. Optional.
  * @leave: makes what leaves of @buffer, which it takes; @frame has no positions, states and
  *   covariances any more.
- * @finish: the stream has ended, or goes on in another place, and its last frame has left. Optional.
+ * @finish: the stream has ended, and its last frame has left. One that goes on in another place begins a new
+ *   recording and drops the old one. Optional.
  * @get_gain: g of the springs, 1/s²
  * @damping_ratio: ζ of the springs, 1 = critically damped
  * @score: name of the element message of a window's score

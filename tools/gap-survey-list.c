@@ -137,7 +137,12 @@ gap_survey_list_parse (const gchar * text, const gchar * folder,
   for (guint i = 0; rows[i]; i++) {
     g_auto (GStrv) words = NULL;
     GError *fault = NULL;
-    gboolean good = g_shell_parse_argv (rows[i], NULL, &words, &fault);
+    gboolean good;
+
+    /* line ends of Windows */
+    if (g_str_has_suffix (rows[i], "\r"))
+      rows[i][strlen (rows[i]) - 1] = 0;
+    good = g_shell_parse_argv (rows[i], NULL, &words, &fault);
 
     if (g_error_matches (fault, G_SHELL_ERROR, G_SHELL_ERROR_EMPTY_STRING)) {
       g_error_free (fault);

@@ -557,7 +557,8 @@ upright (const Arguments * a)
   if (n < 2 || (board ? n < 3 : n > 2))
     return complain (BAD_USAGE, board ? "give the rig, and pictures of the "
         "board that lies level: upright RIG CAMERA=FILE…"
-        : "give the rig to turn: upright RIG");
+        : "give the rig to turn, alone: upright RIG; pictures are of "
+        "--world board");
   rig = cloth_rig_load (a->cameras[1], &error);
   if (!rig)
     return complain (FAILED, "%s", error->message);

@@ -5,6 +5,7 @@
 
 #include <gio/gio.h>
 #include <math.h>
+#include <glib/gstdio.h>
 #include <string.h>
 
 #include "gst/cloth-io/observations.h"
@@ -31,6 +32,8 @@ typedef struct
 
 /* How long a worker waits for the manager to begin. */
 #define JOIN_S 60.
+/* Most evaluations, unless told otherwise. */
+#define USUAL 1000
 /* First steps of a search, as a share of a number's range. */
 #define FIRST_STEP 0.25
 
@@ -58,13 +61,36 @@ inputs_clear (Inputs * i)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Inputs, inputs_clear);
 
+/* Whether a take is where a fitted one is to be; then says so. */
+static gboolean
+is_fitted (const Arguments * a, const gchar * folder, GError ** error)
+{
+  for (guint i = 0; i < g_strv_length (a->rest + 1); i++) {
+    g_autofree gchar *name = g_strdup_printf ("take%u", i);
+    g_autofree gchar *made = g_build_filename (a->output, name, NULL);
+    g_autofree gchar *path = g_canonicalize_filename (made, NULL);
+
+    if (g_str_equal (path, folder)) {
+      g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,
+          "“%s” "
+          "would be overwritten by what is made of it: give another --output",
+          folder);
+      return TRUE;
+    }
+  }
+  return FALSE;
+}
+
 static gboolean
 load (const Arguments * a, Inputs * i, GError ** error)
 {
+  gboolean seen = FALSE;
+
   i->takes = g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_take_free);
   i->observations = g_ptr_array_new_with_free_func (clear_observations);
   i->inputs = g_array_new (FALSE, FALSE, sizeof (ClothSynthesisInput));
   for (gchar ** folder = a->rest + 1; *folder; folder++) {
+    g_autofree gchar *own = g_canonicalize_filename (*folder, NULL);
     ClothTake *take = cloth_take_open (*folder, error);
     ClothObservations *observations = NULL;
     ClothSynthesisInput input;
@@ -72,17 +98,24 @@ load (const Arguments * a, Inputs * i, GError ** error)
     if (!take)
       return FALSE;
     g_ptr_array_add (i->takes, take);
+    if (a->output && is_fitted (a, own, error))
+      return FALSE;
     if (!gst_cloth_io_observations_load_take (take, a->rig, &observations,
             error))
       return FALSE;
     g_ptr_array_add (i->observations, observations);
+    seen |= observations != NULL;
     /* a mesh says more than what it was made of */
     input = (ClothSynthesisInput) {
     take, cloth_take_get_n_positions (take) ==
           cloth_take_get_n_frames (take) ? NULL : observations};
     g_array_append_val (i->inputs, input);
   }
-  return TRUE;
+  if (!a->rig || seen)
+    return TRUE;
+  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "--rig is of "
+      "no use: no take has a folder observations");
+  return FALSE;
 }
 
 /* Where the fitted cloth was, vertex by vertex measured or, where nobody saw it, predicted. */
@@ -92,19 +125,13 @@ write_take (const ClothSynthesisTake * t, ClothTake * from,
 {
   const ClothRecording *r = t->recording;
   const ClothTakeInfo *like = cloth_take_get_info (from);
-  g_autoptr (ClothTakeInfo) info = cloth_take_info_new (like->name);
+  g_autoptr (ClothTakeInfo) info = cloth_take_info_copy (like);
   g_autoptr (ClothTakeWriter) writer = NULL;
   g_autofree guint8 *states = g_malloc (r->n);
   g_autofree gfloat *clamps = g_new (gfloat, 3 * like->held->len + 1);
 
-  info->fps = like->fps;
-  info->columns = like->columns;
-  info->rows = like->rows;
-  info->width_m = like->width_m;
-  info->height_m = like->height_m;
-  info->mesh = g_strdup (like->mesh);
-  memcpy (info->gravity, like->gravity, sizeof info->gravity);
-  g_array_append_vals (info->held, like->held->data, like->held->len);
+  /* that of cameras is not this cloth's */
+  info->noise_sigma_m = NAN;
   writer = cloth_take_writer_new (folder, info, r->scene->topology, error);
   if (!writer)
     return FALSE;
@@ -424,12 +451,14 @@ evaluate (const Arguments * a, const gchar * what, ClothSearch * search,
   spool = a->worker ? cloth_spool_join (a->spool, &options, JOIN_S, error) :
       cloth_spool_manage (a->spool, &options, what, a->resume, error);
   if (spool && !a->worker)
-    g_printerr ("the points wait for workers: the same command with --worker, "
-        "without --output\n");
-  return spool && (a->worker ? cloth_search_work_spool (spool,
+    g_printerr
+        ("the points wait for workers: takes, --model, --rig, --seed and "
+        "--spool as here, with --worker in place of the rest\n");
+  return spool
+      && (a->worker ? cloth_search_work_spool (spool,
           cloth_synthesis_problem_get_n (problem),
-          cloth_synthesis_problem_evaluate, problem, error) :
-      cloth_search_run_spool (search, spool, error));
+          cloth_synthesis_problem_evaluate, problem,
+          error) : cloth_search_run_spool (search, spool, error));
 }
 
 /* Values that came in an order of their own are taken in it again. */
@@ -449,7 +478,7 @@ replay (const Arguments * a, ClothSearch * search, GError ** error)
 
 static ClothSearch *
 search_new (const Arguments * a, const ClothSynthesisProblem * problem,
-    GError ** error)
+    const gchar * what, GError ** error)
 {
   const guint n = cloth_synthesis_problem_get_n (problem);
   g_autofree gdouble *start = g_new (gdouble, n);
@@ -468,6 +497,7 @@ search_new (const Arguments * a, const ClothSynthesisProblem * problem,
   options.high = high;
   options.scale = scale;
   options.most_evaluations = (guint) a->evaluations;
+  options.what = what;
   options.as_they_come = a->as_they_come;
   return cloth_search_new (&options, error);
 }
@@ -486,7 +516,7 @@ find (const Arguments * a, const Inputs * inputs, const ClothModel * model,
 
   if (!what)
     return NULL;
-  *search = search_new (a, problem, error);
+  *search = search_new (a, problem, what, error);
   if (!*search || !replay (a, *search, error)
       || !evaluate (a, what, *search, problem, error) || a->worker)
     return NULL;
@@ -552,9 +582,9 @@ check (const Arguments * a)
   if (a->threads < 0)
     return complain (BAD_USAGE, "--threads: give 0 for all, or a number");
   if (!searches && (a->spool || a->worker || a->resume || a->as_they_come
-          || a->replay))
+          || a->replay || a->evaluations != USUAL))
     return complain (BAD_USAGE,
-        "--spool, --worker, --resume, --as-they-come and "
+        "--evaluations, --spool, --worker, --resume, --as-they-come and "
         "--replay are of the command search");
   if (a->evaluations < 1
       || (guint) a->evaluations > CLOTH_SEARCH_MAX_EVALUATIONS)
@@ -562,7 +592,8 @@ check (const Arguments * a)
         CLOTH_SEARCH_MAX_EVALUATIONS);
   if ((a->worker || a->resume) && !a->spool)
     return complain (BAD_USAGE, "name the spool: --spool DIR");
-  if (a->worker && (a->output || a->resume || a->replay))
+  if (a->worker && (a->output || a->resume || a->replay
+          || a->evaluations != USUAL))
     return complain (BAD_USAGE,
         "--worker takes the takes, --model, --rig, --seed "
         "and --spool: all else is the manager's");
@@ -579,6 +610,7 @@ run (gconstpointer data)
   g_autoptr (ClothSearch) search = NULL;
   g_auto (Inputs) inputs = { NULL };
   ClothSynthesisOptions options;
+  gboolean is_new;
 
   if (a->rest && !strcmp (a->rest[0], "track"))
     return run_track (a);
@@ -589,6 +621,7 @@ run (gconstpointer data)
     return complain (FAILED, "--model: %s", error->message);
   if (!load (a, &inputs, &error))
     return complain (FAILED, "%s", error->message);
+  is_new = a->output && !g_file_test (a->output, G_FILE_TEST_EXISTS);
   if (!a->worker && !cloth_folder_make (a->output, &error))
     return complain (FAILED, "%s", error->message);
   /* a spool keeps what was done, so that its ends may be killed */
@@ -605,10 +638,14 @@ run (gconstpointer data)
     synthesis = find (a, &inputs, model, &options, &search, &error);
   if (a->worker && !error)
     return DONE;
-  if (!synthesis || !write_all (a, synthesis, &inputs, search, &error))
+  if (!synthesis || !write_all (a, synthesis, &inputs, search, &error)) {
+    /* of a folder with anything in it nothing is taken */
+    if (is_new)
+      g_rmdir (a->output);
     return g_error_matches (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED) ?
         complain (FAILED, "stopped; nothing was written") : complain (FAILED,
         "%s", error->message);
+  }
   show (a, synthesis);
   if (search)
     g_print ("%u points were tried, %u of them diverged; the search %s\n",
@@ -652,7 +689,7 @@ static const ToolCommand commands[] = {
 int
 main (int argc, char **argv)
 {
-  Arguments a = {.evaluations = 1000 };
+  Arguments a = {.evaluations = USUAL };
   const GOptionEntry entries[] = {
     {"model", 'm', 0, G_OPTION_ARG_FILENAME, &a.model,
         "What is known of the cloth, and what is free", "FILE"},

@@ -536,7 +536,7 @@ check_held (const ClothScene * scene, gboolean open, GError ** error)
                   && isnan (place[0]))))
         return cloth_file_invalid (error,
             "the clamp of vertex %u has no place in frame %u: a simulation by "
-            "itself needs its whole path; a fit and a diagnosis find it from "
+            "itself needs its whole path; gst-cloth-fit-1.0 and a diagnosis find it from "
             "what was seen of the cloth", held->vertex, frame);
     }
   }

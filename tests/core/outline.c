@@ -42,7 +42,7 @@ place (gdouble left, gdouble top, gdouble * x)
 
 /* A picture of frame @frame whose cloth has the same size and its corner at @left, @top. */
 static void
-film (Scene * s, guint frame, guint left, guint top)
+film (Scene * s, gdouble frame, guint left, guint top)
 {
   ClothRun runs[200];
   GError *error = NULL;
@@ -191,6 +191,27 @@ test_offsets (void)
   }
 }
 
+/* A picture between two frames of a sheet that moves by 10 px from frame to frame, taken by a camera whose clock is
+ * late, shows it where it was then. */
+static void
+test_between (void)
+{
+  g_auto (Scene) s;
+  g_autoptr (ClothOutline) o = NULL;
+
+  scene_init (&s);
+  for (guint f = 0; f < N_FRAMES; f++)
+    place (LEFT + 10. * f, TOP, s.x + 3 * N * f);
+  s.observations->rig->cameras[0].offset_s = 0.9 / FPS;
+  film (&s, 2.3, LEFT + 14, TOP);
+  o = cloth_outline_new (&s.recording, s.observations, 1);
+  g_assert_true (cloth_outline_find (o, 0, 1, s.x));
+  for (guint row = 1; row < ROWS - 1; row++)
+    for (guint side = 0; side < 2; side++)
+      g_assert_cmpfloat_with_epsilon (o->offsets[row * COLUMNS + side *
+              (COLUMNS - 1)], 0., 0.3);
+}
+
 /* Outlines further apart than the reach are not each other's; nor is there one in an empty or a full picture, or
  * when the sheet is behind the camera. */
 static void
@@ -225,6 +246,7 @@ main (int argc, char **argv)
   g_test_add_func ("/outline/overlap", test_overlap);
   g_test_add_func ("/outline/times", test_times);
   g_test_add_func ("/outline/offsets", test_offsets);
+  g_test_add_func ("/outline/between", test_between);
   g_test_add_func ("/outline/nothing", test_nothing);
   return g_test_run ();
 }

@@ -52,6 +52,13 @@ typedef struct
   gdouble centre[3], direction[3], spread;
 } Lone;
 
+/* A place that no cloth can be at. */
+typedef struct
+{
+  gsize at;
+  gdouble y[3], seen;
+} Torn;
+
 /* What outlines tell of a place, if they are off by one pixel: Σ g gᵀ and Σ g δ over the cameras. */
 typedef struct
 {
@@ -69,6 +76,7 @@ typedef struct
   ClothViews *views;
   ClothRays *rays;
   GArray *lone;
+  GArray *torn;                 /* of Torn: what was taken away last */
   ClothOutline *outline;        /* NULL: there are no silhouettes */
   gboolean *outlined;           /* places of which only outlines tell */
   ClothObservedCounts *counts;
@@ -81,6 +89,7 @@ maker_clear (Maker * m)
   cloth_views_free (m->views);
   cloth_rays_free (m->rays);
   g_clear_pointer (&m->lone, g_array_unref);
+  g_clear_pointer (&m->torn, g_array_unref);
   g_clear_pointer (&m->outline, cloth_outline_free);
   g_free (m->outlined);
 }
@@ -114,6 +123,7 @@ maker_init (Maker * m, ClothTake * take, ClothRecording * r,
           r->times[0]) / (r->n_frames - 1));
   m->rays = cloth_rays_new (r->n);
   m->lone = g_array_new (FALSE, FALSE, sizeof (Lone));
+  m->torn = g_array_new (FALSE, FALSE, sizeof (Torn));
   if (has_silhouettes (observations)) {
     m->outline = cloth_outline_new (r, observations, threads);
     m->outlined = g_new0 (gboolean, (gsize) r->n * r->n_frames);
@@ -312,14 +322,41 @@ guess (Maker * m, GError ** error)
   return TRUE;
 }
 
+/* Places that no cloth can be at, if all others are where they are now: those on lone rays move, so each time anew. */
+static void
+remove_torn (Maker * m)
+{
+  ClothRecording *r = m->r;
+  const gsize all = (gsize) r->n * r->n_frames;
+  g_autofree gdouble *before = NULL;
+
+  for (guint i = 0; i < m->torn->len; i++) {
+    const Torn *torn = &g_array_index (m->torn, Torn, i);
+
+    memcpy (r->y + 3 * torn->at, torn->y, sizeof torn->y);
+    r->seen[torn->at] = torn->seen;
+  }
+  g_array_set_size (m->torn, 0);
+  r->sigma = cloth_recording_noise_finish (r->noise, r->seen);
+  before = g_memdup2 (r->seen, all * sizeof *before);
+  m->counts->torn = cloth_recording_remove_torn (r);
+  for (gsize at = 0; m->counts->torn && at < all; at++)
+    if (before[at] > 0. && r->seen[at] == 0.) {
+      Torn torn = { at, {r->y[3 * at], r->y[3 * at + 1], r->y[3 * at + 2]},
+      before[at]
+      };
+
+      g_array_append_val (m->torn, torn);
+    }
+}
+
 /* Without places that no cloth can be at, and with the paths of all clamps. */
 static gboolean
 finish (Maker * m, GError ** error)
 {
   ClothRecording *r = m->r;
 
-  r->sigma = cloth_recording_noise_finish (r->noise, r->seen);
-  m->counts->torn = cloth_recording_remove_torn (r);
+  remove_torn (m);
   cloth_recording_open_paths (r);
   cloth_recording_interpolate (r);
   if (!cloth_recording_find_paths (r, error))
@@ -364,7 +401,7 @@ look_at_outlines (const Maker * m, const gdouble * x, GArray * list)
   for (guint f = 0; f < r->n_frames; f++) {
     memset (told, 0, r->n * sizeof *told);
     for (guint c = 0; c < m->n_cameras; c++)
-      if (cloth_outline_find (m->outline, c, f, x + 3 * (gsize) f * r->n))
+      if (cloth_outline_find (m->outline, c, f, x))
         add_outline (m, f, told, off);
     /* where the cloth starts is known */
     for (guint v = 0; f && v < r->n; v++) {

@@ -47,6 +47,7 @@ struct _ClothObserver
   ClothSim *forecast;           /* without springs: only for frames of rays */
   gdouble *scene_start;
   gdouble fps;                  /* of the scene */
+  gboolean automatic;           /* the time step */
   ClothTopology *topology;
   ClothOutliers *outliers;
   guint64 n_pushed, n_popped;
@@ -103,6 +104,7 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
   self->forecast = forecast;
   self->n = scene->topology->n_vertices;
   self->fps = scene->fps;
+  self->automatic = model->time_step == 0.;
   self->topology = cloth_topology_copy (scene->topology);
   self->outliers = cloth_outliers_new (scene->topology);
   n = 3 * (gsize) self->n;
@@ -389,10 +391,18 @@ check_state (ClothObserver * self, GError ** error)
 
     if (cloth_sim_get_state (self->sim, model, &since_s) == CLOTH_SIM_OK)
       continue;
-    g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
-        "the simulation blew up at %.3f s: set “time_step” of the model below "
-        "%g s or to 0, or lower the stiffnesses and damping.stiffness",
-        since_s, cloth_sim_get_time_step (self->sim));
+    if (self->automatic)
+      g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
+          "the simulation blew up at %.3f s: lower the stiffnesses and "
+          "damping.stiffness of the model; and if the scene's take has no "
+          "positions, give it those of the first frame, without which the "
+          "cloth starts flat below its clamps, far from where it was seen",
+          since_s);
+    else
+      g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_MODEL,
+          "the simulation blew up at %.3f s: set “time_step” of the model "
+          "below %g s or to 0, or lower the stiffnesses and damping.stiffness",
+          since_s, cloth_sim_get_time_step (self->sim));
     return FALSE;
   }
   return TRUE;

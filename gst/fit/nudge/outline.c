@@ -43,6 +43,7 @@ typedef struct
   ClothCoverage *coverage;
   Mask drawn, filmed;
   gdouble *normals;             /* sums, [n][2] */
+  gdouble *places;              /* of the vertices when a picture was taken */
   gint *pictures;               /* which of the observations is nearest, [camera][frame]; -1: none */
 } Outline;
 
@@ -69,6 +70,7 @@ cloth_outline_new (const ClothRecording * recording,
   self->public.offsets = g_new (gdouble, t->n_vertices);
   self->public.gradients = g_new (gdouble, 3 * (gsize) t->n_vertices);
   self->normals = g_new (gdouble, 2 * (gsize) t->n_vertices);
+  self->places = g_new (gdouble, 3 * (gsize) t->n_vertices);
   self->pictures = g_new (gint, (gsize) n_cameras * recording->n_frames);
   for (guint c = 0; c < n_cameras; c++)
     cloth_recording_find_silhouettes (recording, observations, c,
@@ -243,32 +245,48 @@ finish (Outline * self, const ClothCamera * camera, const gdouble * positions)
   }
 }
 
+/* Puts the cloth where it is at a time. */
+static void
+place (Outline * self, gdouble time, guint frame, const gdouble * path)
+{
+  const gsize row = 3 * (gsize) self->r->n;
+  gdouble share;
+  const gdouble *from = path + row * cloth_recording_find_between (self->r,
+      time, frame, &share);
+
+  for (gsize i = 0; i < row; i++)
+    self->places[i] = (1. - share) * from[i] + share * from[row + i];
+}
+
 /* @outline: an outline
  * @camera: which camera looks
  * @frame: of the recording
- * @positions: (array): where the cloth is, [n][3], m
+ * @path: (array): where the cloth is in all frames, [n_frames][n][3], m
  *
- * Finds how far the filmed outline is from that of the cloth.
+ * Finds how far the filmed outline is from that of the cloth at the time of the picture that is nearest.
  *
  * Returns: whether a picture of that camera at that time has a silhouette
  */
 gboolean
 cloth_outline_find (ClothOutline * outline, guint camera, guint frame,
-    const gdouble * positions)
+    const gdouble * path)
 {
   Outline *self = (Outline *) outline;
   const ClothCamera *c = &self->observations->rig->cameras[camera];
   const gint picture = self->pictures[(gsize) camera * self->r->n_frames +
       frame];
+  const gdouble *positions = self->places;
+  const ClothObservation *o;
 
   memset (outline->counts, 0, outline->n * sizeof *outline->counts);
   memset (outline->offsets, 0, outline->n * sizeof *outline->offsets);
   memset (self->normals, 0, 2 * (gsize) outline->n * sizeof *self->normals);
   if (picture < 0)
     return FALSE;
+  o = &g_array_index (self->observations->list, ClothObservation, picture);
+  place (self, o->time_s - c->offset_s, frame, path);
   cloth_coverage_draw (self->coverage, c, positions, self->pool);
-  fill_masks (self, &g_array_index (self->observations->list,
-          ClothObservation, picture));
+  fill_masks (self, o);
   for (gint y = AROUND; y < self->drawn.height - AROUND; y++)
     for (gint x = AROUND; x < self->drawn.width - AROUND; x++)
       if (is_cloth (&self->drawn, x, y) && (!is_cloth (&self->drawn, x - 1, y)
@@ -294,6 +312,7 @@ cloth_outline_free (ClothOutline * outline)
   g_free (self->drawn.cloth);
   g_free (self->filmed.cloth);
   g_free (self->normals);
+  g_free (self->places);
   g_free (self->pictures);
   g_free (outline->counts);
   g_free (outline->offsets);

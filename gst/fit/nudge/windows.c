@@ -108,6 +108,26 @@ add_frame (gpointer data, guint model, guint frame, const gdouble * positions)
   add_distances (e, r, frame, positions);
 }
 
+/* Tiles of the flat cloth, of its extents along u and v. */
+static guint *
+list_tiles (const ClothTopology * t)
+{
+  guint *tiles = g_new0 (guint, t->n_vertices);
+
+  for (guint k = 0; k < 2; k++) {
+    gfloat low = INFINITY, high = -INFINITY;
+
+    for (guint v = 0; v < t->n_vertices; v++) {
+      low = MIN (low, t->uv[2 * v + k]);
+      high = MAX (high, t->uv[2 * v + k]);
+    }
+    for (guint v = 0; v < t->n_vertices && high > low; v++)
+      tiles[v] += (k ? TILES : 1) * MIN ((guint) (TILES * (t->uv[2 * v + k] -
+                  low) / (high - low)), TILES - 1);
+  }
+  return tiles;
+}
+
 static ClothWindowedGap *
 gap_new (const ClothRecording * r, gdouble window_s)
 {
@@ -124,6 +144,7 @@ gap_new (const ClothRecording * r, gdouble window_s)
     e->positions[i] = (gfloat) r->y[i];
   e->window = cloth_rollout_list_windows (r, window_s);
   e->n_windows = e->window[r->n_frames - 1] + 1;
+  e->tile = list_tiles (r->scene->topology);
   return e;
 }
 
@@ -216,6 +237,7 @@ cloth_windowed_gap_free (ClothWindowedGap * gap)
   if (!gap)
     return;
   g_free (gap->window);
+  g_free (gap->tile);
   g_free (gap->squares);
   g_free (gap->positions);
   g_free (gap->nudged);
@@ -339,16 +361,13 @@ cloth_windowed_gaps_interval (ClothWindowedGap ** gaps, guint n,
   g_autofree gdouble *sums = g_new0 (gdouble, (gsize) all * n);
   g_autofree gdouble *counts = g_new0 (gdouble, all);
   g_autofree guint *cells = g_new (guint, all);
-  guint side = MAX (1, (guint) sqrt (gaps[0]->n));
   ClothRandom random;
 
   for (guint frame = 1; frame < gaps[0]->n_frames; frame++) {
     guint w = gaps[0]->window[frame];
 
     for (guint v = 0; v < gaps[0]->n; v++) {
-      guint tile = MIN (v % side * TILES / side, TILES - 1) + TILES *
-          MIN (v / side * TILES / side, TILES - 1);
-      guint cell = w * TILES * TILES + tile;
+      guint cell = w * TILES * TILES + gaps[0]->tile[v];
       gsize at = (gsize) frame * gaps[0]->n + v;
 
       if (!isfinite (gaps[0]->squares[at]))

@@ -12,6 +12,7 @@ G_BEGIN_DECLS
  * @n_frames: number of frames
  * @n_windows: number of windows
  * @window: which window leads to each frame, [n_frames]
+ * @tile: in which tile of the flat cloth each vertex is, [n]
  * @squares: squared distance, [n_frames][n], m²; NaN where nothing was seen
  * @positions: simulated, [n_frames][n][3], m
  * @directions: mean square along warp, weft and normal, m²
@@ -27,6 +28,7 @@ typedef struct {
   guint n_frames;
   guint n_windows;
   guint *window;
+  guint *tile;
   gdouble *squares;
   gfloat *positions;
   gdouble directions[3];

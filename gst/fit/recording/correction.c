@@ -159,6 +159,8 @@ copy (const ClothRecording * r)
   c->seen = g_memdup2 (r->seen, all * sizeof *r->seen);
   c->noise = cloth_recording_noise_ref (r->noise);
   c->targets = NULL;
+  /* of what was recorded */
+  c->start = NULL;
   return c;
 }
 
@@ -179,6 +181,25 @@ sharpen (ClothRecording * r, gdouble width)
   }
 }
 
+/* What is known of a place, and along which directions, of another place of another noise. */
+static void
+take_noise (const ClothRecordingNoise * from, gsize of,
+    ClothRecordingNoise * to, gsize at)
+{
+  memcpy (to->white + 6 * at, from->white + 6 * of, 6 * sizeof (gdouble));
+  memcpy (to->draw + 6 * at, from->draw + 6 * of, 6 * sizeof (gdouble));
+}
+
+/* Noise whose places are still to be filled. */
+static ClothRecordingNoise *
+noise_like (const ClothRecordingNoise * noise)
+{
+  ClothRecordingNoise *made = cloth_recording_noise_new (noise->n);
+
+  made->square = noise->square;
+  return made;
+}
+
 /* Each frame gets what was recorded later, by a clock that ran faster. */
 static void
 retime (const ClothRecording * from, ClothRecording * to, gdouble factor,
@@ -186,6 +207,10 @@ retime (const ClothRecording * from, ClothRecording * to, gdouble factor,
 {
   const gsize row = 3 * (gsize) from->n;
 
+  if (from->noise) {
+    cloth_recording_noise_unref (to->noise);
+    to->noise = noise_like (from->noise);
+  }
   memset (to->y, 0, from->n_frames * row * sizeof *to->y);
   memset (to->velocity, 0, from->n_frames * row * sizeof *to->velocity);
   for (guint f = 0; f < from->n_frames; f++) {
@@ -199,6 +224,10 @@ retime (const ClothRecording * from, ClothRecording * to, gdouble factor,
     for (guint v = 0; v < from->n; v++)
       to->seen[(gsize) f * from->n + v] = m.outside ? 0. :
           m.share > 0. ? seen[v] * seen[from->n + v] : seen[v];
+    /* of a place between two frames that of the nearer one */
+    for (guint v = 0; from->noise && v < from->n; v++)
+      take_noise (from->noise, (gsize) (m.frame + (m.share > 0.5)) * from->n +
+          v, to->noise, (gsize) f * from->n + v);
   }
 }
 
@@ -210,6 +239,7 @@ relabel (ClothRecording * r, const ClothMeasurement * m)
   g_autofree gdouble *y = g_new (gdouble, 3 * (gsize) r->n);
   g_autofree gdouble *velocity = g_new (gdouble, 3 * (gsize) r->n);
   g_autofree gdouble *seen = g_new (gdouble, r->n);
+  ClothRecordingNoise *noise = r->noise ? noise_like (r->noise) : NULL;
 
   for (guint f = 0; f < r->n_frames; f++) {
     gdouble *to[2] = { r->y + 3 * (gsize) f * r->n,
@@ -222,12 +252,19 @@ relabel (ClothRecording * r, const ClothMeasurement * m)
     memcpy (seen, own, r->n * sizeof *seen);
     for (guint v = 0; v < r->n; v++) {
       own[v] = labels[v] < 0 ? 0. : seen[labels[v]];
+      if (noise && labels[v] >= 0)
+        take_noise (r->noise, (gsize) f * r->n + (guint) labels[v], noise,
+            (gsize) f * r->n + v);
       for (guint k = 0; k < 3; k++) {
         to[0][3 * v + k] = labels[v] < 0 ? 0. : y[3 * labels[v] + (gint) k];
         to[1][3 * v + k] = labels[v] < 0 ? 0. :
             velocity[3 * labels[v] + (gint) k];
       }
     }
+  }
+  if (noise) {
+    cloth_recording_noise_unref (r->noise);
+    r->noise = noise;
   }
 }
 

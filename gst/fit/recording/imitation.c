@@ -31,6 +31,7 @@ cloth_imitations_new (const ClothRecording * recording, guint n)
     r->y = g_new0 (gdouble, all);
     r->velocity = g_new0 (gdouble, all);
     r->targets = NULL;
+    r->start = NULL;
   }
   return imitations;
 }

@@ -17,7 +17,7 @@ typedef struct
 {
   ClothRecording *recording;
   gint *first, *last;           /* frames that know a vertex; none: all later, -1 */
-  gint *clamp;                  /* of a vertex, -1: none */
+  guint *clamp;                 /* of a vertex the first one; none: how many there are */
   gboolean *adrift;             /* it begins where those around it say */
   guint *begin, *neighbours;    /* of a vertex, in the mesh */
   gboolean *hidden;             /* how far a vertex moved is not known */
@@ -108,20 +108,22 @@ find_known (Bridge * b, guint frame, guint vertex)
 {
   const ClothRecording *r = b->recording;
   const ClothScene *scene = r->scene;
-  const gint clamp = b->clamp[vertex];
-  const ClothHeld *held;
-  const gdouble *path;
 
   if (r->seen[(gsize) frame * r->n + vertex] > 0.)
     return TRUE;
-  if (clamp < 0)
-    return FALSE;
-  held = &g_array_index (scene->held, ClothHeld, clamp);
-  path = scene->clamps + 3 * ((gsize) frame * scene->held->len + (guint) clamp);
-  if (!cloth_held_holds (held, r->times[frame]) || isnan (path[0]))
-    return FALSE;
-  memcpy (place (b, frame, vertex), path, 3 * sizeof *path);
-  return TRUE;
+  /* one after the other may hold it */
+  for (guint i = b->clamp[vertex]; i < scene->held->len; i++) {
+    const ClothHeld *held = &g_array_index (scene->held, ClothHeld, i);
+    const gdouble *path = scene->clamps +
+        3 * ((gsize) frame * scene->held->len + i);
+
+    if (held->vertex != vertex || !cloth_held_holds (held, r->times[frame])
+        || isnan (path[0]))
+      continue;
+    memcpy (place (b, frame, vertex), path, 3 * sizeof *path);
+    return TRUE;
+  }
+  return FALSE;
 }
 
 /* Even motion between the frames before and after that know the vertex. */
@@ -275,12 +277,11 @@ cloth_recording_interpolate (ClothRecording * recording)
   const gfloat *start = recording->start;
   g_auto (Bridge) b = { recording, g_new (gint, n), g_new (gint, n) };
 
-  b.clamp = g_new (gint, n);
+  b.clamp = g_new (guint, n);
   for (guint v = 0; v < n; v++)
-    b.clamp[v] = -1;
-  for (guint i = 0; i < recording->scene->held->len; i++)
-    b.clamp[g_array_index (recording->scene->held, ClothHeld, i).vertex] =
-        (gint) i;
+    b.clamp[v] = recording->scene->held->len;
+  for (guint i = recording->scene->held->len; i-- > 0;)
+    b.clamp[g_array_index (recording->scene->held, ClothHeld, i).vertex] = i;
   b.adrift = g_new0 (gboolean, n);
   b.hidden = g_new (gboolean, n);
   b.moved = g_new (gdouble, 3 * n);

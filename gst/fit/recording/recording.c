@@ -148,7 +148,7 @@ cloth_recording_new (ClothTake * take, GError ** error)
   r->n_frames = cloth_take_get_n_frames (take);
   if (r->n_frames < CLOTH_RECORDING_WINDOW) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s has %u "
-        "frames; a diagnosis needs motion, at least %u", r->name, r->n_frames,
+        "frames; what it shows needs motion, at least %u", r->name, r->n_frames,
         CLOTH_RECORDING_WINDOW);
     return NULL;
   }
@@ -213,7 +213,7 @@ interpolate (const ClothRecording * from, ClothRecording * to)
     }
 }
 
-/* Clamps hold the nearest vertices, each but one. */
+/* Clamps hold the nearest vertices, each but one at a time. */
 static void
 hold (const ClothScene * from, ClothScene * to)
 {
@@ -229,9 +229,13 @@ hold (const ClothScene * from, ClothScene * to)
     gboolean taken = FALSE;
 
     held.vertex = row * b->columns + column;
-    for (guint k = 0; k < to->held->len; k++)
-      taken = taken
-          || g_array_index (to->held, ClothHeld, k).vertex == held.vertex;
+    for (guint k = 0; k < to->held->len; k++) {
+      const ClothHeld *other = &g_array_index (to->held, ClothHeld, k);
+
+      taken = taken || (other->vertex == held.vertex
+          && fmax (other->from_s, held.from_s) < fmin (other->until_s,
+              held.until_s));
+    }
     if (taken)
       continue;
     of[to->held->len] = i;
@@ -310,6 +314,28 @@ cloth_recording_find_frame (const ClothRecording * recording, gdouble time)
       high = middle;
   }
   return (gint) (fabs (time - t[low]) <= fabs (time - t[high]) ? low : high);
+}
+
+/* @recording: a recording of two frames at least
+ * @time: s
+ * @frame: that it is nearest to
+ * @share: (out): of the way to the next frame
+ *
+ * Where a time is between two frames, from the first to the last one.
+ *
+ * Returns: the first of them
+ */
+guint
+cloth_recording_find_between (const ClothRecording * recording, gdouble time,
+    guint frame, gdouble * share)
+{
+  const ClothRecording *r = recording;
+  const guint before = MIN (frame - (frame > 0 && time < r->times[frame]),
+      r->n_frames - 2);
+
+  *share = CLAMP ((time - r->times[before]) /
+      (r->times[before + 1] - r->times[before]), 0., 1.);
+  return before;
 }
 
 /* @recording: a recording of two frames at least

@@ -25,6 +25,8 @@ G_BEGIN_DECLS
 ClothRecording *cloth_recording_new (ClothTake * take, GError ** error);
 gint cloth_recording_find_frame (const ClothRecording * recording,
     gdouble time);
+guint cloth_recording_find_between (const ClothRecording * recording,
+    gdouble time, guint frame, gdouble * share);
 void cloth_recording_find_silhouettes (const ClothRecording * recording,
     const ClothObservations * observations, guint camera, gint * pictures);
 gsize cloth_recording_remove_torn (ClothRecording * recording);

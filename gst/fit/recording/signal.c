@@ -12,6 +12,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/recording/signal.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -170,7 +171,7 @@ cloth_recording_straighten (ClothRecording * recording, const gdouble * drawn)
 /* @recording: a recording; what was not seen is left out
  *
  * Estimates white noise from the fourth differences in time of what was seen five times
- * running, by their median.
+ * running, by their median; at least what places are rounded by, which cloth at rest doesn't show.
  *
  * Returns: standard deviation of a coordinate, m; NaN: nothing was seen so often
  */
@@ -179,6 +180,7 @@ cloth_recording_estimate_sigma (const ClothRecording * recording)
 {
   const ClothRecording *r = recording;
   g_autoptr (GArray) all = g_array_new (FALSE, FALSE, sizeof (gdouble));
+  gdouble farthest = 0.;
 
   for (guint frame = 0; frame + 5 <= r->n_frames; frame++)
     for (guint v = 0; v < r->n; v++) {
@@ -194,8 +196,12 @@ cloth_recording_estimate_sigma (const ClothRecording * recording)
             4. * y[3][k] + y[4][k]);
 
         g_array_append_val (all, d);
+        farthest = fmax (farthest, fabs (y[0][k]));
       }
     }
-  return cloth_median ((gdouble *) all->data, all->len) / MEDIAN_OF_NORMAL /
-      sqrt (FOURTH_DIFFERENCE);
+  if (!all->len)
+    return NAN;
+  return fmax (cloth_median ((gdouble *) all->data, all->len) /
+      MEDIAN_OF_NORMAL / sqrt (FOURTH_DIFFERENCE),
+      FLT_EPSILON * farthest / sqrt (12.));
 }

@@ -393,11 +393,17 @@ find_limit (guint64 n)
   return high;
 }
 
-/* Which of the clamps of @scene holds a corner that makes up a place, the nearest of them; −1:
- * none. @apart is how far its vertex is from @uv on the flat cloth, m. */
+static gboolean
+overlap (const ClothHeld * a, const ClothHeld * b)
+{
+  return fmax (a->from_s, b->from_s) < fmin (a->until_s, b->until_s);
+}
+
+/* Which of the clamps of @scene holds a corner that makes up a place, the nearest of them, and of those of one
+ * vertex one that holds when @held does; −1: none. @apart is how far its vertex is from @uv on the flat cloth, m. */
 static gint
 find_clamp (const ClothScene * scene, const ClothFlatPlace * place,
-    const gfloat * uv, gdouble * apart)
+    const gfloat * uv, const ClothHeld * held, gdouble * apart)
 {
   gint found = -1;
 
@@ -409,7 +415,9 @@ find_clamp (const ClothScene * scene, const ClothFlatPlace * place,
 
     for (guint c = 0; c < 4; c++)
       if (place->corners[c] == vertex && place->weights[c] > ROUNDING
-          && off < *apart) {
+          && (off < *apart || (off == *apart
+                  && overlap (&g_array_index (scene->held, ClothHeld, i),
+                      held)))) {
         *apart = off;
         found = (gint) i;
       }
@@ -431,7 +439,8 @@ check_held (const Twin * t, const ClothScene * a, const ClothScene * b,
     ClothFlatPlace place = cloth_flat_map_locate (map, uv);
     gdouble apart;
 
-    if (find_clamp (b, &place, uv, &apart) < 0)
+    if (find_clamp (b, &place, uv, &g_array_index (a->held, ClothHeld, i),
+            &apart) < 0)
       return refuse (t, error, "%s holds vertex %u, at (%g, %g) m on the flat "
           "cloth, and %s holds nothing there; clamp the same places", which,
           vertex, uv[0], uv[1], other);
@@ -485,7 +494,7 @@ check_paths (const Twin * t, GError ** error)
     const ClothHeld *held = &g_array_index (s->held, ClothHeld, i), *other;
     gdouble apart, most = 0., first_s = NAN;
     gint k = find_clamp (own, &t->places[held->vertex],
-        s->topology->uv + 2 * (gsize) held->vertex, &apart);
+        s->topology->uv + 2 * (gsize) held->vertex, held, &apart);
 
     other = &g_array_index (own->held, ClothHeld, k);
     if (is_moved (held->from_s, other->from_s, frame)

@@ -361,7 +361,11 @@ begin_log (ClothSearch * s)
   for (guint i = 0; i < G_N_ELEMENTS (numbers); i++)
     g_string_append_printf (s->log, " %s", g_ascii_dtostr (text, sizeof text,
             numbers[i]));
+  if (o->what)
+    g_string_append_printf (s->log, " %s", o->what);
   g_string_append_c (s->log, '\n');
+  /* the caller's */
+  s->options.what = NULL;
 }
 
 /* @options: what is searched, copied
@@ -552,9 +556,16 @@ cloth_search_replay (ClothSearch * search, const gchar * log, GError ** error)
   const gsize n_lines = g_strv_length (lines);
   const gsize begin = search->log->len;
 
-  if (n_lines < 2 || search->counts.n_decided || strlen (lines[0]) + 1 != begin
-      || strncmp (search->log->str, log, begin) != 0)
-    return refuse (error, "the log is of a search with other options");
+  if (n_lines < 2 || !g_str_has_prefix (log, "pattern-search "))
+    return refuse (error, "this is no log of a search");
+  if (search->counts.n_decided || strlen (lines[0]) + 1 != begin
+      || strncmp (search->log->str, log, begin) != 0) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_SEARCH,
+        "pattern search: the log is of a search with other options, or of "
+        "something else: it begins “%s”, and this search's would “%.*s”",
+        lines[0], (int) begin - 1, search->log->str);
+    return FALSE;
+  }
   for (gsize i = 1; i + 1 < n_lines; i++)
     if (!replay_line (search, lines[i])) {
       g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_SEARCH,

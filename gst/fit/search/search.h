@@ -32,6 +32,7 @@ typedef struct _ClothSearch ClothSearch;
  * @most_evaluations: it ends with so many
  * @in_flight: points that are asked for before their values are known; 0: one for each
  *   direction, 2n. More than there are workers, else these wait
+ * @what: (nullable): what is searched, for the log: a log of anything else is refused
  * @as_they_come: decides in the order in which values come, as the papers do, which keeps all
  *   workers busy; else in the order of trials, so that the search is the same for any number of
  *   workers
@@ -52,6 +53,7 @@ typedef struct {
   gdouble same;
   guint most_evaluations;
   guint in_flight;
+  const gchar *what;
   gboolean as_they_come;
 } ClothSearchOptions;
 

@@ -415,8 +415,8 @@ find_sigmas (const Fit * fit, const gdouble * variances,
 }
 
 /* Moves the numbers of the finer mesh to where its imitations fit as those of the fitted ones; @last is by how
- * much. FALSE: there is none of both kinds to hold against each other. */
-static gboolean
+ * much. Returns how many there are of both kinds to hold against each other. */
+static guint
 move_finer (const Fit * fit, const Search * searches, const Search * finer,
     gdouble * moved, gdouble * last)
 {
@@ -437,7 +437,7 @@ move_finer (const Fit * fit, const Search * searches, const Search * finer,
     moved[i] = CLAMP (place + moved[i] - last[i], d->fit_low, d->fit_high) -
         place;
   }
-  return n > 0;
+  return n;
 }
 
 /* What the numbers are on a mesh twice as fine: where the range ends they are not known. FALSE without an error: none
@@ -449,19 +449,19 @@ find_finer (const Fit * fit, const Search * searches,
   g_autofree gdouble *moved = g_new0 (gdouble, fit->m);
   g_autofree gdouble *last = g_new0 (gdouble, fit->m);
   Search finer[N_IMITATIONS];
-  gboolean done = TRUE;
+  guint counted = N_IMITATIONS;
 
   searches_init (finer, fit->m);
-  for (guint search = 0; search < N_SEARCHES && done; search++) {
+  for (guint search = 0; search < N_SEARCHES && counted; search++) {
     g_autoptr (ClothModel) model = move (fit, moved);
 
     cloth_model_set_effect (model, cloth_effect_find ("mesh_resolution"),
         &halved);
-    done = fit_imitations (fit, model, finer, error)
-        && move_finer (fit, searches, finer, moved, last);
+    counted = fit_imitations (fit, model, finer, error) ?
+        move_finer (fit, searches, finer, moved, last) : 0;
   }
   searches_clear (finer);
-  for (guint i = 0; i < fit->m && done; i++) {
+  for (guint i = 0; i < fit->m && counted; i++) {
     const ClothDirection *d = cloth_candidates_direction (fit->candidates, i);
     const gdouble place = moved[i] + cloth_candidates_place (fit->candidates,
         fit->model, i);
@@ -470,10 +470,9 @@ find_finer (const Fit * fit, const Search * searches,
       continue;
     errors[i].finer = place;
     errors[i].finer_sigma = sqrt (pow (errors[i].sigma, 2.) +
-        2. * variances[i] / N_IMITATIONS + last[i] * last[i] +
-        moved[i] * moved[i]);
+        2. * variances[i] / counted + last[i] * last[i] + moved[i] * moved[i]);
   }
-  return done;
+  return counted > 0;
 }
 
 /* Whether the model says itself how fine its mesh is. */

@@ -21,11 +21,9 @@ place (const ClothRecording * r, const gfloat * positions, gdouble time,
     guint frame, gdouble * places)
 {
   const gsize row = 3 * (gsize) r->n;
-  const guint before = MIN (frame - (frame > 0 && time < r->times[frame]),
-      r->n_frames - 2);
-  const gfloat *from = positions + before * row;
-  const gdouble share = CLAMP ((time - r->times[before]) /
-      (r->times[before + 1] - r->times[before]), 0., 1.);
+  gdouble share;
+  const gfloat *from = positions + row * cloth_recording_find_between (r, time,
+      frame, &share);
 
   for (gsize i = 0; i < row; i++)
     places[i] = (1. - share) * from[i] + share * from[row + i];

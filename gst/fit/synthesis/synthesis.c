@@ -71,6 +71,14 @@ find_drawn (const ClothWindowedGap * gap, const ClothRecording * r)
   return sqrt (sum / MAX (n, 1));
 }
 
+static gboolean
+fail_unsound (const ClothRecording * r, GError ** error)
+{
+  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the fitted "
+      "cloth diverges; narrow the ranges of the model's free numbers", r->name);
+  return FALSE;
+}
+
 /* How far two models are off what was seen, and where the second one lets the cloth go. */
 static gboolean
 measure (ClothSynthesisTake * take, const ClothModel * before,
@@ -96,7 +104,7 @@ measure (ClothSynthesisTake * take, const ClothModel * before,
   }
   cloth_windowed_gaps_free (windows, 2);
   cloth_windowed_gaps_free (runs, 2);
-  return runs != NULL;
+  return runs && (!isinf (take->after.windows) || fail_unsound (r, error));
 }
 
 /* The strengths that are tried: how many times the usual gain. */
@@ -201,11 +209,7 @@ draw (ClothSynthesisTake * take, const ClothModel * model,
     return FALSE;
   for (gsize i = 0; i < all; i++)
     take->positions[i] = (gfloat) path[i];
-  if (sound)
-    return TRUE;
-  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL, "%s: the fitted "
-      "cloth diverges; narrow the ranges of the model's free numbers", r->name);
-  return FALSE;
+  return sound || fail_unsound (r, error);
 }
 
 static void
@@ -298,6 +302,19 @@ is_to_be_made (const ClothSynthesisTake * take)
       || take->recording->scene->clamps_sd;
 }
 
+/* Whether a place was seen from the second frame on: with the first one a fit only begins. */
+static gboolean
+check_seen (const ClothRecording * r, GError ** error)
+{
+  for (gsize i = r->n; i < (gsize) r->n * r->n_frames; i++)
+    if (r->seen[i] > 0.)
+      return TRUE;
+  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: nothing "
+      "of the cloth was seen after the first frame, so there is nothing to fit "
+      "it to", r->name);
+  return FALSE;
+}
+
 /* What was seen, as the model at hand has it. */
 static gboolean
 look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
@@ -310,7 +327,7 @@ look (ClothSynthesis * s, const ClothSynthesisInput * inputs,
       cloth_recording_free (take->recording);
       take->recording = record (&inputs[i], model, o, &take->counts, error);
     }
-    if (!take->recording
+    if (!take->recording || !check_seen (take->recording, error)
         || !cloth_recording_refine_paths (take->recording, model, o->gain,
             &o->rollout, error)
         || !cloth_synthesis_straighten (&take->recording, 1, model, o->gain,
