@@ -191,6 +191,7 @@ static const struct
   {"/model.json", "/none", "", "none"},
   {"/model.json", "/take", "fitted=/tmp/fitted.json", "no free numbers"},
   {"/model.json", "/take", "fitted=/nowhere/fitted.json", "can be written"},
+  {"/model.json", "/take", "fitted=/", "is a folder"},
 };
 
 GST_START_TEST (test_refused)
@@ -238,6 +239,11 @@ GST_START_TEST (test_goes_wrong)
 
   gst_harness_set_src_caps (setup.h, make_caps (COLUMNS + 1, ROWS, 0.1f, FPS));
   expect (&setup, GST_MESSAGE_ERROR, "not of the scene's cloth");
+  /* once, though the caps come again before each of these */
+  begin_segment (&setup);
+  gst_harness_push_event (setup.h, gst_event_new_gap (0, GST_SECOND));
+  gst_harness_push_event (setup.h, gst_event_new_eos ());
+  fail_unless (find_message (&setup, GST_MESSAGE_ERROR, NULL) == NULL);
   tear_down (&setup);
 
   put_model ("free.json", ", \"free\": "

@@ -68,7 +68,8 @@ launch('triangulate', 'name=join', 'rig=%s/rig.json' % films, 'pattern=%s/patter
        *words)
 np.save(take + '/times.npy', np.arange(len(truth)) / 25)
 np.save(take + '/clamps.npy', truth[:1, :1])
-info = {'version': 1, 'name': 'falling', 'fps': 25, 'held': [{'vertex': 0}],
+info = {'version': 1, 'notes': 'kept', 'obstacles': [{'type': 'plane', 'point': [0, 0, -9], 'normal': [0, 0, 1],
+                                                      'friction': 0.3}], 'name': 'falling', 'fps': 25, 'held': [{'vertex': 0}],
         'grid': {'columns': 33, 'rows': 35, 'width_m': 0.63, 'height_m': 0.67}}
 write(take + '/take.json', info)
 model = write(folder + '/model.json', MODEL)
@@ -103,8 +104,19 @@ check(told['takes'][0]['after']['drawn_m'] < told['takes'][0]['before']['drawn_m
 with open(out + '/fitted.json', encoding='utf-8') as file:
     warp = json.load(file)['stretch']['warp']
     check(abs(warp / told['numbers'][0]['value'] - 1) < 1e-4, 'fitted.json has them')
+with open(out + '/take0/take.json', encoding='utf-8') as file:
+    kept = json.load(file)
+    check(kept['notes'] == 'kept' and kept['obstacles'][0]['type'] == 'plane', 'the fitted take has the scene')
 with open(out + '/fit.html', encoding='utf-8') as file:
     check('<html' in file.read(2000), 'a page')
+
+# A take of one frame seen, and what stands in the way of the cloth.
+unseen = folder + '/unseen'
+os.makedirs(unseen)
+np.save(unseen + '/positions.npy', np.where(np.arange(len(truth))[:, None, None] < 1, truth, np.nan).astype('f4'))
+np.save(unseen + '/times.npy', np.arange(len(truth)) / 25)
+np.save(unseen + '/clamps.npy', truth[:, :1])
+write(unseen + '/take.json', info)
 
 frozen = write(folder + '/frozen.json', dict(MODEL, free=[]))
 bare = os.path.join(folder, 'bare')
@@ -120,8 +132,13 @@ for code, says, arguments in (
         (1, 'no free numbers', ('fit', take, '--model', frozen, '--output', out)),
         (1, 'positions.npy', ('fit', bare, '--model', model, '--output', out)),
         (1, '--model', ('fit', take, '--model', folder + '/none.json', '--output', out)),
-        (1, 'is of no camera of the rig', ('fit', take, '--model', model, '--output', out,
+        (1, "the take's 1024 × 768", ('fit', take, '--model', model, '--output', out,
                                                   '--rig', data + '/dots_ring8/rig.json')),
+        (1, 'would be overwritten', ('fit', out + '/take0', '--model', model, '--output', out)),
+        (1, 'no take has a folder observations', ('fit', out + '/take0', '--model', model, '--output', folder + '/b',
+                                                  '--rig', take + '/rig.json')),
+        (1, 'nothing of the cloth was seen', ('fit', unseen, '--model', model, '--output', folder + '/b')),
+        (2, '--evaluations', ('fit', take, '--model', model, '--output', out, '--evaluations', '5')),
         (2, 'name the takes', ('fit', '--model', model, '--output', out)),
         (2, '--output', ('fit', take, '--model', model)),
         (2, 'name the command', ('guess', take, '--model', model, '--output', out)),
@@ -129,6 +146,8 @@ for code, says, arguments in (
     done = run(*arguments)
     check(done.returncode == code and says in done.stderr and 'CRITICAL' not in done.stderr,
           'refused: ' + done.stderr.strip())
+
+check(not os.path.exists(folder + '/b'), 'what fails leaves no folder')
 
 # A rig of the command line stands for the take's own, in whatever order it has the cameras.
 os.rename(take + '/rig.json', folder + '/rig.json')

@@ -121,6 +121,11 @@ wait_for('no job comes', os.path.join(spool, 'todo'), 1)
 for code, says, arguments in (
         (1, 'fit-search', ('--model', other, '--spool', spool, '--worker')),
         (1, 'fit-search', ('--model', guess, '--spool', spool, '--worker', '--seed', '1')),
+        # neither another recording's values, nor none
+        (1, 'of something else', ('--model', guess, '--output', folder + '/replayed', '--replay',
+                                  folder + '/threads1/search.log', '--seed', '1')),
+        (1, 'no log of a search', ('--model', guess, '--output', folder + '/replayed', '--replay', guess)),
+        (2, "manager's", ('--model', guess, '--spool', spool, '--worker', '--evaluations', '5')),
         (2, '--output', ('--model', guess)),
         (2, '--spool', ('--model', guess, '--worker')),
         (2, '--spool', ('--model', guess, '--output', folder + '/x', '--resume')),
