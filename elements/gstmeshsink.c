@@ -39,6 +39,7 @@
 #include "elements/gstclothutil.h"
 #include "elements/gstmeshformat.h"
 #include "gst/take/recover.h"
+#include "gst/take/take.h"
 
 GST_DEBUG_CATEGORY_STATIC (mesh_sink_debug);
 #define GST_CAT_DEFAULT mesh_sink_debug
@@ -188,10 +189,27 @@ gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
   return TRUE;
 }
 
+/* A stream of meshes has no clamps, obstacles and seams; a take that had them loses them. */
+static void
+warn_of_scene (GstMeshSink * self)
+{
+  g_autoptr (ClothTake) take = self->settings.format == CLOTH_MESH_FORMAT_TAKE ?
+      cloth_take_open (self->settings.location, NULL) : NULL;
+  const ClothTakeInfo *info = take ? cloth_take_get_info (take) : NULL;
+
+  if (info && info->held->len + info->obstacles->len + info->seams->len > 0)
+    GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
+        ("The take in “%s” has clamps, obstacles or seams; the recording that "
+            "replaces it has none.", self->settings.location),
+        ("Stop now to keep it, and record to another location."));
+}
+
 static gboolean
 open_writer (GstMeshSink * self)
 {
   g_autoptr (GError) error = NULL;
+
+  warn_of_scene (self);
 
   self->writer =
       cloth_mesh_writer_new (self->settings.location, self->settings.format,

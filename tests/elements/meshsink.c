@@ -471,6 +471,49 @@ GST_START_TEST (test_remains)
 
 GST_END_TEST;
 
+static void
+copy_take (const gchar * name)
+{
+  static const gchar *const files[] = { "take.json", "positions.npy",
+    "clamps.npy"
+  };
+  g_autofree gchar *path = scratch_path (name);
+
+  g_assert_cmpint (g_mkdir (path, 0777), ==, 0);
+  for (guint i = 0; i < G_N_ELEMENTS (files); i++) {
+    g_autofree gchar *from = g_build_filename (TEST_DATA, "take_drag",
+        files[i], NULL);
+    g_autofree gchar *to = g_build_filename (path, files[i], NULL);
+    g_autofree gchar *bytes = NULL;
+    gsize size;
+
+    g_assert_true (g_file_get_contents (from, &bytes, &size, NULL));
+    g_assert_true (g_file_set_contents (to, bytes, (gssize) size, NULL));
+  }
+}
+
+/* A stream has no clamps: a take that had some is not replaced without a word. */
+GST_START_TEST (test_scene_lost)
+{
+  Sink sink;
+
+  scratch_begin ();
+  copy_take ("c.take");
+  for (guint again = 0; again < 2; again++) {
+    sink = open_sink ("c.take", "take");
+    push_frames (&sink, 0, 2);
+    if (!again)
+      expect_warning (&sink, "has clamps, obstacles or seams");
+    expect_warning (&sink, NULL);
+    fail_unless (gst_harness_push_event (sink.harness, gst_event_new_eos ()));
+    expect_no_error (&sink);
+    close_sink (&sink);
+  }
+  scratch_end ();
+}
+
+GST_END_TEST;
+
 /* Nothing is told of another location, nor of a program that lives. */
 GST_START_TEST (test_no_remains)
 {
@@ -624,6 +667,7 @@ meshsink_suite (void)
   tcase_add_test (tests, test_unwritable);
   tcase_add_test (tests, test_device);
   tcase_add_test (tests, test_remains);
+  tcase_add_test (tests, test_scene_lost);
   tcase_add_test (tests, test_no_remains);
   tcase_add_test (tests, test_no_location);
   tcase_add_test (tests, test_wrong_endings);
