@@ -44,11 +44,9 @@ def search(folder, evaluations, workers, threads):
         subprocess.run(manage + ['--threads', str(threads)], check=True, stdout=subprocess.DEVNULL)
     seconds = time.monotonic() - start
     with open(folder + '/out/fit.json', encoding='utf-8') as file:
-        found = [number['value'] for number in json.load(file)['numbers']]
-    with open(folder + '/out/search.log', encoding='utf-8') as file:
-        decided = sum(1 for line in file if line.strip() and not line.startswith('#'))
+        told = json.load(file)
     shutil.rmtree(folder + '/out')
-    return seconds, decided, found
+    return seconds, told['search']['evaluations'], [number['value'] for number in told['numbers']]
 
 
 def main(folder):
