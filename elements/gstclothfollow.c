@@ -638,6 +638,7 @@ make_caps_event (Follow * self, GstEvent * event)
   gst_event_parse_caps (event, &caps);
   made = self->klass->make_caps (GST_CLOTH_FOLLOW (self->element), caps);
   if (!made) {
+    gst_caps_replace (&self->refused, caps);
     gst_event_unref (event);
     return NULL;
   }

@@ -193,15 +193,19 @@ gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
 static void
 warn_of_scene (GstMeshSink * self)
 {
-  g_autoptr (ClothTake) take = self->settings.format == CLOTH_MESH_FORMAT_TAKE ?
-      cloth_take_open (self->settings.location, NULL) : NULL;
+  const gchar *location = self->settings.location;
+  const gboolean is_take = self->settings.format == CLOTH_MESH_FORMAT_AUTO ?
+      cloth_mesh_format_guess (location) == CLOTH_MESH_FORMAT_TAKE :
+      self->settings.format == CLOTH_MESH_FORMAT_TAKE;
+  g_autoptr (ClothTake) take = is_take ? cloth_take_open (location, NULL) :
+      NULL;
   const ClothTakeInfo *info = take ? cloth_take_get_info (take) : NULL;
 
   if (info && info->held->len + info->obstacles->len + info->seams->len > 0)
     GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
         ("The take in “%s” has clamps, obstacles or seams; the recording that "
-            "replaces it has none.", self->settings.location),
-        ("Stop now to keep it, and record to another location."));
+            "replaces it has none.", location),
+        ("Copy it before the recording ends, or record to another location."));
 }
 
 static gboolean

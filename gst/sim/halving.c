@@ -148,6 +148,37 @@ halve_topology (Maker * maker)
   return topology;
 }
 
+/* The old clamps: of each vertex the first one, and of each the next of its vertex, counted from 1; 0: none. */
+typedef struct
+{
+  const ClothScene *old;
+  ClothScene *scene;
+  guint *first, *next;
+  GArray *from;                 /* of each new clamp the four old ones that it is the mean of */
+} Clamps;
+
+/* Clamps of a vertex from its corner @k on: whenever clamps of all corners hold at once. */
+static void
+hold_between (Clamps * c, const guint32 corner[4], guint k, ClothHeld held,
+    guint parents[4])
+{
+  if (k == 4) {
+    g_array_append_val (c->scene->held, held);
+    g_array_append_vals (c->from, parents, 1);
+    return;
+  }
+  for (guint i = c->first[corner[k]]; i; i = c->next[i]) {
+    const ClothHeld *parent = &g_array_index (c->old->held, ClothHeld, i - 1);
+    ClothHeld both = held;
+
+    both.from_s = MAX (held.from_s, parent->from_s);
+    both.until_s = MIN (held.until_s, parent->until_s);
+    parents[k] = i - 1;
+    if (both.from_s < both.until_s)
+      hold_between (c, corner, k + 1, both, parents);
+  }
+}
+
 /* A vertex between held ones is held on the mean of their paths. Old clamps keep their
  * indices in the list, by which effects name them. */
 static void
@@ -155,14 +186,17 @@ halve_clamps (const ClothScene * old, const ClothHalving * halving)
 {
   ClothScene *scene = halving->scene;
   guint n = halving->n_old, n_old_held = old->held->len;
-  g_autofree guint *held_of = g_new0 (guint, n + 1);
+  g_autofree guint *first = g_new0 (guint, n + 1);
+  g_autofree guint *next = g_new0 (guint, n_old_held + 1);
   g_autoptr (GArray) from = g_array_new (FALSE, FALSE, 4 * sizeof (guint));
+  Clamps c = { old, scene, first, next, from };
 
   for (guint i = 0; i < n_old_held; i++) {
     ClothHeld held = g_array_index (old->held, ClothHeld, i);
     const guint same[4] = { i, i, i, i };
 
-    held_of[held.vertex] = i + 1;
+    next[i + 1] = first[held.vertex];
+    first[held.vertex] = i + 1;
     held.vertex = halving->kept[held.vertex];
     g_array_append_val (scene->held, held);
     g_array_append_vals (from, same, 1);
@@ -171,23 +205,9 @@ halve_clamps (const ClothScene * old, const ClothHalving * halving)
     ClothHeld held = { i, -G_MAXDOUBLE, G_MAXDOUBLE };
     const guint32 *corner = halving->from[i];
     guint parents[4];
-    gboolean all = corner[0] != corner[2];
 
-    for (guint k = 0; k < 4 && all; k++) {
-      const ClothHeld *parent;
-
-      parents[k] = held_of[corner[k]] - 1;
-      all = held_of[corner[k]] > 0;
-      if (!all)
-        break;
-      parent = &g_array_index (old->held, ClothHeld, parents[k]);
-      held.from_s = MAX (held.from_s, parent->from_s);
-      held.until_s = MIN (held.until_s, parent->until_s);
-    }
-    if (all && held.from_s < held.until_s) {
-      g_array_append_val (scene->held, held);
-      g_array_append_vals (from, parents, 1);
-    }
+    if (corner[0] != corner[2])
+      hold_between (&c, corner, 0, held, parents);
   }
   scene->clamps = g_new (gdouble, 3 * (gsize) old->n_frames *
       scene->held->len + 1);

@@ -200,7 +200,7 @@ add_rate (GString * table, const ClothTake * take)
 
   cloth_summary_add (table, "frames", "%u", n);
   if (n < 2) {
-    cloth_summary_add (table, "time", "%.6g s", first);
+    cloth_summary_add (table, "time", "%.13g s", first);
     return;
   }
   for (guint i = 0; i + 1 < n; i++) {
@@ -281,9 +281,9 @@ add_clamps (GString * table, const ClothTake * take, const Pass * pass)
 
     g_string_append_printf (text, "vertex %u", item->vertex);
     if (isfinite (item->from_s))
-      g_string_append_printf (text, ", held from %.4g s", item->from_s);
+      g_string_append_printf (text, ", held from %.13g s", item->from_s);
     if (isfinite (item->until_s))
-      g_string_append_printf (text, ", let go at %.4g s", item->until_s);
+      g_string_append_printf (text, ", let go at %.13g s", item->until_s);
     if (pass->open[i])
       g_string_append_printf (text, ", not logged in %u of %u frames",
           pass->open[i], cloth_take_get_n_frames (take));

@@ -70,9 +70,9 @@ parse_held (JsonObject * root, ClothTakeInfo * info, GError ** error)
             error)
         || !cloth_json_get_count (&take_json, object, "vertex", 0,
             n_vertices - 1, &held.vertex, error)
-        || !cloth_json_get_number (&take_json, object, "from_s", -1e9, 1e9,
+        || !cloth_json_get_number (&take_json, object, "from_s", -1e11, 1e11,
             &held.from_s, error)
-        || !cloth_json_get_number (&take_json, object, "until_s", -1e9, 1e9,
+        || !cloth_json_get_number (&take_json, object, "until_s", -1e11, 1e11,
             &held.until_s, error))
       return FALSE;
     if (held.from_s >= held.until_s)

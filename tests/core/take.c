@@ -388,7 +388,7 @@ static const struct
   {"{\"version\":1,\"grid\":{\"columns\":3,\"rows\":2,\"height_m\":1}}",
       "“grid” needs width_m and height_m"},
   {OK ",\"held\":[{\"vertex\":1,\"from_s\":\"0\"}]}", "“from_s”"},
-  {OK ",\"held\":[{\"vertex\":1,\"until_s\":1e10}]}", "“until_s”"},
+  {OK ",\"held\":[{\"vertex\":1,\"until_s\":1e12}]}", "“until_s”"},
   {MESH ",\"seams\":[{\"lines\":[3,[0,1]]}]}",
       "a line of seam 0 must be a list of at least two vertices"},
   {MESH ",\"seams\":[{\"lines\":[[0,\"1\"],[2,3]]}]}", "whole numbers"},

@@ -500,7 +500,7 @@ GST_START_TEST (test_scene_lost)
   scratch_begin ();
   copy_take ("c.take");
   for (guint again = 0; again < 2; again++) {
-    sink = open_sink ("c.take", "take");
+    sink = open_sink ("c.take", again == 1 ? "take" : "auto");
     push_frames (&sink, 0, 2);
     if (!again)
       expect_warning (&sink, "has clamps, obstacles or seams");

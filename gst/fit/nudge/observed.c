@@ -52,11 +52,11 @@ typedef struct
   gdouble centre[3], direction[3], spread;
 } Lone;
 
-/* A place that no cloth can be at. */
+/* A place that no cloth can be at, and what is known of it. */
 typedef struct
 {
   gsize at;
-  gdouble y[3], seen;
+  gdouble y[3], white[6], draw[6], seen;
 } Torn;
 
 /* What outlines tell of a place, if they are off by one pixel: Σ g gᵀ and Σ g δ over the cameras. */
@@ -322,31 +322,40 @@ guess (Maker * m, GError ** error)
   return TRUE;
 }
 
-/* Places that no cloth can be at, if all others are where they are now: those on lone rays move, so each time anew. */
+/* What was torn comes back: places on lone rays move, and others may be found to be right by the next turn. */
+static void
+restore_torn (Maker * m)
+{
+  ClothRecording *r = m->r;
+
+  for (guint i = 0; i < m->torn->len; i++) {
+    const Torn *t = &g_array_index (m->torn, Torn, i);
+
+    memcpy (r->y + 3 * t->at, t->y, sizeof t->y);
+    memcpy (r->noise->white + 6 * t->at, t->white, sizeof t->white);
+    memcpy (r->noise->draw + 6 * t->at, t->draw, sizeof t->draw);
+    r->seen[t->at] = t->seen;
+  }
+  g_array_set_size (m->torn, 0);
+}
+
 static void
 remove_torn (Maker * m)
 {
   ClothRecording *r = m->r;
   const gsize all = (gsize) r->n * r->n_frames;
-  g_autofree gdouble *before = NULL;
+  g_autofree gdouble *before = g_memdup2 (r->seen, all * sizeof *before);
 
-  for (guint i = 0; i < m->torn->len; i++) {
-    const Torn *torn = &g_array_index (m->torn, Torn, i);
-
-    memcpy (r->y + 3 * torn->at, torn->y, sizeof torn->y);
-    r->seen[torn->at] = torn->seen;
-  }
-  g_array_set_size (m->torn, 0);
   r->sigma = cloth_recording_noise_finish (r->noise, r->seen);
-  before = g_memdup2 (r->seen, all * sizeof *before);
   m->counts->torn = cloth_recording_remove_torn (r);
   for (gsize at = 0; m->counts->torn && at < all; at++)
     if (before[at] > 0. && r->seen[at] == 0.) {
-      Torn torn = { at, {r->y[3 * at], r->y[3 * at + 1], r->y[3 * at + 2]},
-      before[at]
-      };
+      Torn t = {.at = at,.seen = before[at] };
 
-      g_array_append_val (m->torn, torn);
+      memcpy (t.y, r->y + 3 * at, sizeof t.y);
+      memcpy (t.white, r->noise->white + 6 * at, sizeof t.white);
+      memcpy (t.draw, r->noise->draw + 6 * at, sizeof t.draw);
+      g_array_append_val (m->torn, t);
     }
 }
 
@@ -461,7 +470,6 @@ draw_to_outlines (Maker * m, const gdouble * x)
   g_autoptr (GArray) list = g_array_new (FALSE, FALSE, sizeof (Told));
   const gdouble px = look_at_outlines (m, x, list);
 
-  r->simulated = TRUE;
   for (gsize at = r->n; at < (gsize) r->n * r->n_frames; at++)
     if (r->seen[at] == 0.)
       memcpy (r->y + 3 * at, x + 3 * at, 3 * sizeof (gdouble));
@@ -477,7 +485,9 @@ turn (Maker * m, const ClothModel * model, gdouble gain,
     const ClothRolloutOptions * options, gdouble * x, GError ** error)
 {
   const ClothRecording *r = m->r;
+  g_autofree gdouble *ways = NULL;
   gdouble sum = 0.;
+  guint n = 0;
   gboolean sound;
 
   if (!cloth_rollout_follow (&r, 1, model, gain, options, x, &sound, error))
@@ -491,17 +501,28 @@ turn (Maker * m, const ClothModel * model, gdouble gain,
   /* a ray that was lost for a turn is better than an outline */
   if (m->outline)
     forget_outlines (m);
+  restore_torn (m);
+  ways = g_new (gdouble, m->lone->len);
   for (guint i = 0; i < m->lone->len; i++) {
     const Lone *lone = &g_array_index (m->lone, Lone, i);
 
-    sum += put_on_ray (m->r, lone, x + 3 * ((gsize) lone->frame * r->n +
+    ways[i] = put_on_ray (m->r, lone, x + 3 * ((gsize) lone->frame * r->n +
             lone->vertex));
   }
   if (!finish (m, error))
     return NAN;
+  /* from a bridge to a ray and back is no way */
+  for (guint i = 0; i < m->lone->len; i++) {
+    const Lone *lone = &g_array_index (m->lone, Lone, i);
+
+    if (r->seen[(gsize) lone->frame * r->n + lone->vertex] == 0.)
+      continue;
+    sum += ways[i];
+    n++;
+  }
   if (m->outline)
     draw_to_outlines (m, x);
-  return sqrt (sum / MAX (m->lone->len, 1));
+  return sqrt (sum / MAX (n, 1));
 }
 
 /* Of the motion at lone rays the share along them. */
@@ -603,6 +624,7 @@ cloth_recording_new_observed (ClothTake * take,
       break;
     last = moved;
   }
+  r->simulated = m.outline != NULL;
   counts->along = find_share_along (&m);
   return g_steal_pointer (&r);
 }

@@ -14,8 +14,8 @@ G_BEGIN_DECLS
  *   projector
  * @square: mean square of the error, m²
  *
- * Noise that differs from place to place and from direction to direction; shared by all recordings
- * that are made of one.
+ * Noise that differs from place to place and from direction to direction; shared by recordings
+ * that are made of one, if their places are the same.
  */
 typedef struct {
   gsize n;

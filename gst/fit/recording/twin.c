@@ -393,14 +393,23 @@ find_limit (guint64 n)
   return high;
 }
 
-static gboolean
-overlap (const ClothHeld * a, const ClothHeld * b)
+/* How long both hold, s; below 0: how far apart they are. */
+static gdouble
+find_overlap (const ClothHeld * a, const ClothHeld * b)
 {
-  return fmax (a->from_s, b->from_s) < fmin (a->until_s, b->until_s);
+  return fmin (a->until_s, b->until_s) - fmax (a->from_s, b->from_s);
+}
+
+/* Whether @a, of one vertex with @b, holds longer together with @held. */
+static gboolean
+holds_longer (const ClothHeld * a, const ClothHeld * b, const ClothHeld * held)
+{
+  return a->vertex == b->vertex
+      && find_overlap (a, held) > find_overlap (b, held);
 }
 
 /* Which of the clamps of @scene holds a corner that makes up a place, the nearest of them, and of those of one
- * vertex one that holds when @held does; −1: none. @apart is how far its vertex is from @uv on the flat cloth, m. */
+ * vertex the one that holds longest while @held does; −1: none. @apart is how far its vertex is from @uv on the flat cloth, m. */
 static gint
 find_clamp (const ClothScene * scene, const ClothFlatPlace * place,
     const gfloat * uv, const ClothHeld * held, gdouble * apart)
@@ -415,9 +424,9 @@ find_clamp (const ClothScene * scene, const ClothFlatPlace * place,
 
     for (guint c = 0; c < 4; c++)
       if (place->corners[c] == vertex && place->weights[c] > ROUNDING
-          && (off < *apart || (off == *apart
-                  && overlap (&g_array_index (scene->held, ClothHeld, i),
-                      held)))) {
+          && (off < *apart || (found >= 0
+                  && holds_longer (&g_array_index (scene->held, ClothHeld, i),
+                      &g_array_index (scene->held, ClothHeld, found), held)))) {
         *apart = off;
         found = (gint) i;
       }

@@ -43,7 +43,7 @@
  * else is wrong. */
 static const gdouble rates[] = { 0.25, 0.5, 2., 4. };
 
-/* A copy of a recording, resampled to few vertices, whose gravity and times may be changed. */
+/* A copy of a recording, resampled to few vertices, whose gravity and times, those of clamps too, may be changed. */
 typedef struct
 {
   ClothRecording *thin;
@@ -58,6 +58,7 @@ alternative_clear (Alternative * t)
   cloth_recording_free (t->thin);
   g_free (t->times);
   g_free (t->velocity);
+  g_clear_pointer (&t->scene.held, g_array_unref);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC (Alternative, alternative_clear);
@@ -75,6 +76,7 @@ alternative_init (Alternative * t, const ClothRecording * recording)
   }
   t->r = t->thin ? *t->thin : *recording;
   t->scene = *t->r.scene;
+  t->scene.held = g_array_copy (t->scene.held);
   t->velocity = g_new (gdouble, 3 * (gsize) t->r.n * t->r.n_frames);
   t->times = g_memdup2 (t->r.times, t->r.n_frames * sizeof *t->times);
   t->r.scene = &t->scene;
@@ -327,6 +329,13 @@ check_size (const ClothRecording * r)
   return NULL;
 }
 
+/* When something was if frames came so much faster. */
+static gdouble
+stretch_time (const ClothRecording * r, gdouble time, gdouble rate)
+{
+  return r->times[0] + (time - r->times[0]) / rate;
+}
+
 /* Whether another frame rate makes the gap much smaller. */
 static gchar *
 check_rate (ClothDiagnosis * d, const ClothRecording * r,
@@ -342,7 +351,16 @@ check_rate (ClothDiagnosis * d, const ClothRecording * r,
     gdouble square;
 
     for (guint f = 0; f < t.r.n_frames; f++)
-      t.times[f] = (t.thin ? t.thin : r)->times[f] / rates[i];
+      t.times[f] = stretch_time (r, (t.thin ? t.thin : r)->times[f], rates[i]);
+    for (guint k = 0; k < t.scene.held->len; k++) {
+      const ClothHeld *held =
+          &g_array_index ((t.thin ? t.thin : r)->scene->held,
+          ClothHeld, k);
+      ClothHeld *at = &g_array_index (t.scene.held, ClothHeld, k);
+
+      at->from_s = stretch_time (r, held->from_s, rates[i]);
+      at->until_s = stretch_time (r, held->until_s, rates[i]);
+    }
     cloth_recording_differentiate (&t.r);
     square = measure_alternative (d, &t, model, rates[i]);
     if (square < least) {
