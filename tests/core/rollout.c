@@ -261,6 +261,32 @@ test_refused (void)
   g_assert_nonnull (strstr (error->message, "mesh_diagonals"));
 }
 
+/* Windows have as many frames whether times are even, late by a rounding, or jitter by a millisecond. */
+static void
+test_windows (void)
+{
+  static const struct
+  {
+    gdouble fps, jitter_s;
+    guint frames;               /* of a window of 0.3 s */
+  } cases[] = {
+    {50., 0., 15}, {50., 1e-7, 15}, {50., 1e-3, 15}, {30000. / 1001., 0., 9},
+    {60., 1e-3, 18}
+  };
+  gdouble times[91];
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    ClothRecording r = {.n_frames = G_N_ELEMENTS (times),.times = times };
+    g_autofree guint *windows = NULL;
+
+    for (guint f = 0; f < r.n_frames; f++)
+      times[f] = f / cases[i].fps + cases[i].jitter_s * (f * 7 % 5 / 2. - 1.);
+    windows = cloth_rollout_list_windows (&r, 0.3);
+    for (guint f = 1; f < r.n_frames; f++)
+      g_assert_cmpuint (windows[f], ==, (f - 1) / cases[i].frames);
+  }
+}
+
 int
 main (int argc, char **argv)
 {
@@ -269,6 +295,7 @@ main (int argc, char **argv)
   g_test_add_func ("/rollout/batches", test_batches);
   g_test_add_func ("/rollout/free", test_free);
   g_test_add_func ("/rollout/diverging", test_diverging);
+  g_test_add_func ("/rollout/windows", test_windows);
   g_test_add_func ("/rollout/refused", test_refused);
   return g_test_run ();
 }

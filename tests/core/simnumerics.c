@@ -346,6 +346,34 @@ test_seams (void)
   cloth_halving_free (halving);
 }
 
+/* Two corners of a square are held, let go and held again: so is the middle between them, and never meanwhile. */
+static void
+test_held_again (void)
+{
+  const gdouble spans[4][2] = { {0., 1.}, {0.5, 1.5}, {2., 3.}, {2., 2.5} };
+  g_autoptr (ClothScene) scene = sheet_new (2, 2, 1., 1.);
+  ClothHalving *halving;
+  guint n = 0;
+
+  for (guint i = 0; i < 4; i++) {
+    cloth_scene_hold (scene, i % 2);
+    g_array_index (scene->held, ClothHeld, i).from_s = spans[i][0];
+    g_array_index (scene->held, ClothHeld, i).until_s = spans[i][1];
+  }
+  halving = cloth_halving_new (scene);
+  g_assert_cmpuint (halving->scene->held->len, ==, 6);
+  for (guint i = 4; i < 6; i++) {
+    const ClothHeld *held = &g_array_index (halving->scene->held, ClothHeld, i);
+    const guint32 *from = halving->from[held->vertex];
+
+    g_assert_cmpuint (from[0] + from[1] + from[2] + from[3], ==, 2);
+    n += held->from_s == 0.5 && held->until_s == 1.;
+    n += held->from_s == 2. && held->until_s == 2.5;
+  }
+  g_assert_cmpuint (n, ==, 2);
+  cloth_halving_free (halving);
+}
+
 static void
 assert_refused (const ClothScene * scene, const ClothEffect * effect,
     gdouble value, gboolean one_differs, const gchar * text)
@@ -394,6 +422,7 @@ main (int argc, char **argv)
   g_test_add_func ("/sim/numerics/mirror", test_mirror);
   g_test_add_func ("/sim/numerics/step", test_step);
   g_test_add_func ("/sim/numerics/seams", test_seams);
+  g_test_add_func ("/sim/numerics/held-again", test_held_again);
   g_test_add_func ("/sim/numerics/refused", test_refused);
   return g_test_run ();
 }

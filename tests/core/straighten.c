@@ -2,6 +2,7 @@
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
+#include <string.h>
 
 #include "gst/fit/recording/recording.h"
 #include "gst/fit/recording/signal.h"
@@ -101,6 +102,26 @@ test_still (void)
   g_free (r.targets);
 }
 
+/* Cloth that mostly rests has no noise to be seen; places are rounded all the same. */
+static void
+test_rounding (void)
+{
+  gdouble y[20 * 6], seen[20 * 2];
+  const ClothRecording r = {.n = 2,.n_frames = 20,.y = y,.seen = seen };
+  gdouble sigma;
+
+  for (guint f = 0; f < 20; f++)
+    for (guint k = 0; k < 6; k++) {
+      seen[2 * f + k / 3] = 1.;
+      y[6 * f + k] = k == 4 ? sin (f) : 2.;
+    }
+  sigma = cloth_recording_estimate_sigma (&r);
+  /* 2 m in float32: steps of 2⁻²², of even distribution */
+  g_assert_cmpfloat_with_epsilon (sigma, ldexp (1., -22) / sqrt (12.), 1e-12);
+  memset (seen, 0, sizeof seen);
+  g_assert_true (isnan (cloth_recording_estimate_sigma (&r)));
+}
+
 int
 main (int argc, char **argv)
 {
@@ -111,6 +132,7 @@ main (int argc, char **argv)
 
     g_test_add_data_func (path, &cases[i], test_swing);
   }
+  g_test_add_func ("/straighten/rounding", test_rounding);
   g_test_add_func ("/straighten/still", test_still);
   return g_test_run ();
 }
