@@ -12,6 +12,9 @@
  * cloth is where its weight, its stiffness and the rest of it let it be. Vertices that were seen are
  * marked as measured, the others as predicted.
  *
+ * The take says where the cloth starts, by one frame of positions at least, else flat below its clamps, and has the
+ * whole path of each clamp.
+ *
  * The stream time is the scene's: what comes before its first or after its last frame is left
  * out. A frame needs the three frames behind it, so buffers leave that much later. What one camera saw
  * draws the cloth across its rays only; along them the simulation is believed. Join two or more cameras
