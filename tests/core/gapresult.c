@@ -292,7 +292,7 @@ test_layout (void)
   cloth_json_writer_end_object (writer);
   json = cloth_json_writer_finish (writer);
   g_assert_cmpstr (json, ==, "{\n"
-      "  \"list\": [1, 0.1, 1e-12, 1.234568e+08, null],\n"
+      "  \"list\": [1, 0.1, 1e-12, 123456789, null],\n"
       "  \"rows\": [\n    [],\n    null\n  ]\n}\n");
 }
 
