@@ -187,8 +187,7 @@ gst_follow_view_set_caps (GstFollowView * view, GstElement * element,
 /* A picture that shows nothing has no rays, and may not say whose it is. */
 const ClothRays *
 gst_follow_view_read (GstFollowView * view, GstElement * element,
-    GstBuffer * picture, guint64 * sequence, gdouble * offset_s,
-    GError ** damage)
+    GstBuffer * picture, guint64 * sequence, GError ** damage)
 {
   GstClothIoPoints *points = view->points;
   g_autoptr (GError) error = NULL;
@@ -233,7 +232,6 @@ gst_follow_view_read (GstFollowView * view, GstElement * element,
     view->seen = TRUE;
   }
   *sequence = view->sequence++;
-  *offset_s = gst_follow_view_get_offset (view);
   return view->rays;
 }
 

@@ -50,12 +50,11 @@ GstFollowView *gst_follow_view_new (GstElement * element,
     const GstFollowSettings * settings, const ClothTopology * topology);
 gboolean gst_follow_view_set_caps (GstFollowView * view,
     GstElement * element, const GstCaps * caps);
-/* @sequence, @offset_s: of the picture, and of the camera's clock to the rig's. What is
- * returned belongs to @view. @damage: set, and no error posted, when the picture contradicts
+/* @sequence: of the picture. What is returned belongs to @view. @damage: set, and no error posted, when the picture contradicts
  * those before it. */
 const ClothRays *gst_follow_view_read (GstFollowView * view,
     GstElement * element, GstBuffer * picture, guint64 * sequence,
-    gdouble * offset_s, GError ** damage);
+    GError ** damage);
 /* What the picture that was read last showed, NaN where a vertex was not seen; NULL when it
  * showed nothing. @camera: whose it is. Both belong to @view. */
 const ClothTriangulateView *gst_follow_view_get_points (const GstFollowView *

@@ -392,6 +392,13 @@ let_pass (Follow * self, GstBuffer * buffer, gdouble time)
   return flow;
 }
 
+/* Of the camera's clock to that of its rig, s; of meshes none. */
+static gdouble
+get_offset (const Follow * self)
+{
+  return self->view ? gst_follow_view_get_offset (self->view) : 0.;
+}
+
 /* A segment that goes back begins a new recording. */
 static void
 check_segment (Follow * self, gdouble time)
@@ -443,7 +450,7 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
   g_autoptr (GstBuffer) picture = NULL;
   g_autoptr (GError) error = NULL;
   const ClothRays *rays = NULL;
-  gdouble time, offset_s = 0;
+  gdouble time;
   guint64 sequence = 0;
   GstFlowReturn flow;
 
@@ -463,11 +470,10 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
     return gst_cloth_damage_add (&self->settings.damage, self->element, error);
   }
   time = find_time (self, buffer);
-  check_segment (self, time - (self->view ?
-          gst_follow_view_get_offset (self->view) : 0.));
+  check_segment (self, time - get_offset (self));
   if (self->view) {
     rays = gst_follow_view_read (self->view, self->element, picture,
-        &sequence, &offset_s, &error);
+        &sequence, &error);
     if (!rays) {
       gst_buffer_unref (buffer);
       if (!error)
@@ -479,7 +485,7 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
   } else {
     sequence = gst_cloth_mesh_get_sequence (mesh);
   }
-  time -= offset_s;
+  time -= get_offset (self);
   if (!is_next (self, buffer, time, &flow)) {
     self->n_at_rate++;
     return flow;

@@ -214,7 +214,6 @@ open_writer (GstMeshSink * self)
   g_autoptr (GError) error = NULL;
 
   warn_of_scene (self);
-
   self->writer =
       cloth_mesh_writer_new (self->settings.location, self->settings.format,
       self->settings.mesh_name, self->topology, self->fps_n, self->fps_d,

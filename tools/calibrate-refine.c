@@ -4,7 +4,6 @@
 #include "calibrate-refine.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "gst/cloth-io/observations.h"
 #include "gst/fit/error.h"

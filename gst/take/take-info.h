@@ -25,6 +25,13 @@ cloth_held_holds (const ClothHeld * held, gdouble time)
   return time >= held->from_s && time < held->until_s;
 }
 
+/* How long two clamps hold at once, seconds; below 0: how long neither does between them. */
+static inline gdouble
+cloth_held_overlap (const ClothHeld * a, const ClothHeld * b)
+{
+  return MIN (a->until_s, b->until_s) - MAX (a->from_s, b->from_s);
+}
+
 /* @name: its name
  * @fps: frames a second, 0 when only times.npy says
  * @columns: vertices of a row of the grid, 0 with a mesh file

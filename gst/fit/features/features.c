@@ -126,9 +126,7 @@ cloth_features_new (const ClothRecording * recording, guint n_waves_each,
     gdouble block_s, gdouble highest_hz)
 {
   ClothFeatures *f = g_new0 (ClothFeatures, 1);
-  gdouble span = recording->times[recording->n_frames - 1] -
-      recording->times[0];
-  gdouble frame_s = span / (recording->n_frames - 1);
+  gdouble frame_s = cloth_recording_get_frame_s (recording);
 
   f->n = recording->n;
   f->sigma = recording->sigma;

@@ -8,8 +8,8 @@
  * Assumption: along a lone ray, and along an outline, the cloth is where a simulation is that all
  *   rays and outlines draw.
  * Formula: places on lone rays and the simulation are found in turn, until a turn moves places by less
- *   than the recording's noise, RMS, or no longer by much less than the one before: y = c + d dᵀ (x − c), x = simulation drawn to y with the
- *   weights of ClothRecordingNoise, which draw across the rays only. On outlines, with Λ = Σ g gᵀ/s²
+ *   than the recording's noise, RMS, or no longer by much less than the one before: y = c + d dᵀ (x − c),
+ *   x = simulation drawn to y with the weights of ClothRecordingNoise, which draw across the rays only. On outlines, with Λ = Σ g gᵀ/s²
  *   over the cameras, y = x + Λ⁺ Σ g δ/s²; s is what outlines are off at vertices that were located.
  * Reference: Hasler, Asbach, Rosenhahn, Ohm and Seidel, Physically based tracking of cloth, 2006,
  *   section 3.2 (rays as targets).
@@ -119,8 +119,7 @@ maker_init (Maker * m, ClothTake * take, ClothRecording * r,
     if (!cloth_take_read_positions (take, 0, r->start, error))
       return FALSE;
   }
-  m->views = cloth_views_new (observations, (r->times[r->n_frames - 1] -
-          r->times[0]) / (r->n_frames - 1));
+  m->views = cloth_views_new (observations, cloth_recording_get_frame_s (r));
   m->rays = cloth_rays_new (r->n);
   m->lone = g_array_new (FALSE, FALSE, sizeof (Lone));
   m->torn = g_array_new (FALSE, FALSE, sizeof (Torn));
@@ -339,6 +338,7 @@ restore_torn (Maker * m)
   g_array_set_size (m->torn, 0);
 }
 
+/* Takes places away that no cloth can be at, and keeps what is known of them. */
 static void
 remove_torn (Maker * m)
 {

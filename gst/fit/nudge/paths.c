@@ -197,7 +197,6 @@ paths_init (Paths * p, ClothRecording * r, gdouble gain)
 {
   const ClothScene *scene = r->scene;
   const gdouble forgets_s = 1. / (CLOTH_ROLLOUT_ZETA * sqrt (gain));
-  const gdouble span = r->times[r->n_frames - 1] - r->times[0];
 
   *p = (Paths) {
   r};
@@ -210,10 +209,11 @@ paths_init (Paths * p, ClothRecording * r, gdouble gain)
       }
   if (p->n_paths == 0 || p->n_paths > MOST_CLAMPS)
     return FALSE;
-  p->frame_s = span / (r->n_frames - 1);
+  p->frame_s = cloth_recording_get_frame_s (r);
   p->knot_s = fmax (2. * forgets_s, FRAMES * p->frame_s);
   p->period = (guint) ceil (2. * REACH + FORGOTTEN * forgets_s / p->knot_s);
-  p->n_knots = (guint) ceil (span / p->knot_s) + 3;
+  p->n_knots = (guint) ceil ((r->times[r->n_frames - 1] -
+          r->times[0]) / p->knot_s) + 3;
   p->n_models = 1 + unknowns_of_knot (p) * p->period;
   p->n_about = (guint) MIN (MIN (MOST_ABOUT, MOST_NUMBERS /
           (3. * r->n_frames * p->n_models * p->n_paths)),

@@ -632,7 +632,7 @@ cloth_rollout_windows (const ClothRecording * const *targets,
 /* @recording: a recording
  * @window_s: length of the windows, s
  *
- * A window begins at the frame where the one before ends.
+ * A window begins at the frame where the one before ends; its last frame may be a little late.
  *
  * Returns: (transfer full) (array): the window that leads to each frame; of the first
  *   frame that of the second
@@ -641,9 +641,7 @@ guint *
 cloth_rollout_list_windows (const ClothRecording * recording, gdouble window_s)
 {
   guint *windows = g_new0 (guint, recording->n_frames);
-  const guint last = recording->n_frames - 1;
-  const gdouble slack = LATE * (recording->times[last] -
-      recording->times[0]) / MAX (last, 1);
+  const gdouble slack = LATE * cloth_recording_get_frame_s (recording);
   guint begin = 0;
 
   for (guint frame = 1; frame < recording->n_frames; frame++) {

@@ -233,8 +233,7 @@ check_clamps (const ClothRecording * r, gdouble side, GError ** error)
 static gboolean
 check_rounding (const ClothRecording * r, gdouble edge, GError ** error)
 {
-  gdouble interval = (r->times[r->n_frames - 1] - r->times[0]) /
-      (r->n_frames - 1);
+  gdouble interval = cloth_recording_get_frame_s (r);
   gdouble late = fmax (fabs (r->times[0]), fabs (r->times[r->n_frames - 1]));
   gdouble far = 0.;
 

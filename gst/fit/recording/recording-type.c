@@ -46,6 +46,18 @@ cloth_recording_noise_unref (ClothRecordingNoise * noise)
     g_atomic_rc_box_release_full (noise, clear);
 }
 
+/* @recording: a recording of two frames at least
+ *
+ * Returns: how long a frame takes, s, on the average
+ */
+gdouble
+cloth_recording_get_frame_s (const ClothRecording * recording)
+{
+  const ClothRecording *r = recording;
+
+  return (r->times[r->n_frames - 1] - r->times[0]) / (r->n_frames - 1);
+}
+
 /* @recording: (nullable) (transfer full): a recording
  */
 void

@@ -59,6 +59,7 @@ typedef struct {
 ClothRecordingNoise *cloth_recording_noise_new (gsize n);
 ClothRecordingNoise *cloth_recording_noise_ref (ClothRecordingNoise * noise);
 void cloth_recording_noise_unref (ClothRecordingNoise * noise);
+gdouble cloth_recording_get_frame_s (const ClothRecording * recording);
 void cloth_recording_free (ClothRecording * recording);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothRecording, cloth_recording_free)

@@ -233,8 +233,7 @@ hold (const ClothScene * from, ClothScene * to)
       const ClothHeld *other = &g_array_index (to->held, ClothHeld, k);
 
       taken = taken || (other->vertex == held.vertex
-          && fmax (other->from_s, held.from_s) < fmin (other->until_s,
-              held.until_s));
+          && cloth_held_overlap (other, &held) > 0.);
     }
     if (taken)
       continue;

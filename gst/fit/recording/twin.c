@@ -393,23 +393,17 @@ find_limit (guint64 n)
   return high;
 }
 
-/* How long both hold, s; below 0: how far apart they are. */
-static gdouble
-find_overlap (const ClothHeld * a, const ClothHeld * b)
-{
-  return fmin (a->until_s, b->until_s) - fmax (a->from_s, b->from_s);
-}
-
 /* Whether @a, of one vertex with @b, holds longer together with @held. */
 static gboolean
 holds_longer (const ClothHeld * a, const ClothHeld * b, const ClothHeld * held)
 {
   return a->vertex == b->vertex
-      && find_overlap (a, held) > find_overlap (b, held);
+      && cloth_held_overlap (a, held) > cloth_held_overlap (b, held);
 }
 
 /* Which of the clamps of @scene holds a corner that makes up a place, the nearest of them, and of those of one
- * vertex the one that holds longest while @held does; −1: none. @apart is how far its vertex is from @uv on the flat cloth, m. */
+ * vertex the one that holds longest while @held does; −1: none. @apart is how far its vertex is from @uv on the flat
+ * cloth, m. */
 static gint
 find_clamp (const ClothScene * scene, const ClothFlatPlace * place,
     const gfloat * uv, const ClothHeld * held, gdouble * apart)

@@ -564,9 +564,8 @@ cloth_synthesis_reproject (const ClothSynthesisTake * take,
     gdouble * errors)
 {
   const ClothRecording *r = take->recording;
-  const gdouble frame_s = (r->times[r->n_frames - 1] - r->times[0]) /
-      (r->n_frames - 1);
-  g_autoptr (ClothViews) views = cloth_views_new (observations, frame_s);
+  g_autoptr (ClothViews) views = cloth_views_new (observations,
+      cloth_recording_get_frame_s (r));
   const ClothRig *rig = observations->rig;
 
   for (guint c = 0; c < rig->n_cameras; c++)

@@ -343,19 +343,19 @@ check_rate (ClothDiagnosis * d, const ClothRecording * r,
 {
   const guint n = G_N_ELEMENTS (rates);
   g_auto (Alternative) t = { NULL };
+  const ClothRecording *from;
   gdouble given, least = INFINITY, best = 1.;
 
   alternative_init (&t, r);
+  from = t.thin ? t.thin : r;
   given = measure_alternative (d, &t, model, 1.);
   for (guint i = 0; i < n; i++) {
     gdouble square;
 
     for (guint f = 0; f < t.r.n_frames; f++)
-      t.times[f] = stretch_time (r, (t.thin ? t.thin : r)->times[f], rates[i]);
+      t.times[f] = stretch_time (r, from->times[f], rates[i]);
     for (guint k = 0; k < t.scene.held->len; k++) {
-      const ClothHeld *held =
-          &g_array_index ((t.thin ? t.thin : r)->scene->held,
-          ClothHeld, k);
+      const ClothHeld *held = &g_array_index (from->scene->held, ClothHeld, k);
       ClothHeld *at = &g_array_index (t.scene.held, ClothHeld, k);
 
       at->from_s = stretch_time (r, held->from_s, rates[i]);
