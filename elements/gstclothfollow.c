@@ -287,6 +287,8 @@ send_frame (Follow * self)
   if (flow != GST_FLOW_OK)
     return flow;
   if (!cloth_observer_pop (self->observer, self->residuals, &error)) {
+    if (g_atomic_int_get (&self->cancelled))
+      return GST_FLOW_FLUSHING;
     GST_ELEMENT_ERROR (self->element, STREAM, FAILED, ("%s", error->message),
         ("model=%s", self->settings.model));
     return GST_FLOW_ERROR;
@@ -734,7 +736,7 @@ start (Follow * self)
   const ClothObserverOptions options =
       { self->klass->get_gain (GST_CLOTH_FOLLOW (self->element)),
     self->klass->damping_ratio, settings->window, settings->seed,
-    settings->threads
+    settings->threads, &self->cancelled
   };
   g_autoptr (GError) error = NULL;
   GstFollowInputs inputs = { NULL };

@@ -94,6 +94,7 @@ typedef struct
   ClothBodyHeld *held;
   guint n_frames;
   gdouble epoch;                /* of the first frame on the scene's clock, s: all times here count from it */
+  const gint *stop;             /* nullable: atomic, no step begins while it isn't 0 */
   gdouble *times;
   gdouble *clamps;              /* [frame][held][3] */
   gdouble frame_s;              /* usual distance of frames */
@@ -107,6 +108,12 @@ typedef struct
 void cloth_body_free (ClothBody * body);
 void cloth_body_path (const ClothBody * body, const gdouble * paths,
     guint held, gdouble time_s, gdouble position[3]);
+
+static inline gboolean
+cloth_body_is_stopped (const ClothBody * body)
+{
+  return body->stop && g_atomic_int_get (body->stop);
+}
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (ClothBody, cloth_body_free)
 G_END_DECLS

@@ -265,6 +265,7 @@ cloth_sim_new (const ClothScene * scene, const ClothModel * const *models,
   sim->body = cloth_body_new (sim->numerics->scene, error);
   if (!sim->body)
     return NULL;
+  sim->body->stop = options->stop;
   sim->n_models = n_models;
   sim->fixed_step = models[0]->time_step;
   sim->implicit = models[0]->integrator == CLOTH_INTEGRATOR_IMPLICIT;
@@ -377,7 +378,7 @@ advance_adaptive (ClothSim * sim, gdouble until_s)
 {
   gdouble least = sim->body->frame_s * LEAST_STEP;
 
-  while (sim->time < until_s) {
+  while (sim->time < until_s && !cloth_body_is_stopped (sim->body)) {
     gdouble span = until_s - sim->time, worst = 0.;
     gdouble n = ceil (span / sim->time_step - 1e-9);
 
@@ -438,7 +439,8 @@ find_strained_step (ClothSim * sim)
  *
  * Moves all models on, in equal steps no longer than cloth_sim_get_time_step (); in shorter ones while some cloth is
  * stretched far, by a fifth or so, and the step is an automatic one. A model
- * that diverges is put back to where it was at the start of this call and stays there.
+ * that diverges is put back to where it was at the start of this call and stays there. Comes back early when the options'
+ * stop says so.
  */
 void
 cloth_sim_advance (ClothSim * sim, gdouble until_s)

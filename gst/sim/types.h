@@ -24,12 +24,15 @@ GQuark cloth_sim_error_quark (void);
  * @threads: threads to use, 0 = one for each processor
  * @simd: vector instructions to use; the result does not depend on them
  * @seed: of what is random in effects
+ * @stop: (nullable): atomic: as soon as it isn't 0, cloth_sim_advance () comes back, and the models have to get a
+ *   state anew
  */
 typedef struct {
   gboolean single;
   guint threads;
   ClothSimd simd;
   guint64 seed;
+  const gint *stop;
 } ClothSimOptions;
 
 /* @kinetic: of motion, J

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include <math.h>
 
+#include "gst/fit/error.h"
 #include "gst/fit/nudge/nudge.h"
 
 #define NEAR(a, b, e) g_assert_cmpfloat_with_epsilon (a, b, e)
@@ -238,6 +239,48 @@ test_observer (gconstpointer data)
     g_assert_cmpfloat (fabs (residuals[i]), <, 0.003);
 }
 
+/* Simulating eleven days takes minutes; when it is to stop it comes back, and can begin anew. */
+static void
+test_stop (void)
+{
+  gint stop = 0;
+  const ClothObserverOptions options = { 100, 0.5, 0.3, 0, 1, &stop };
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothModel) model = cloth_model_new ();
+  g_autoptr (ClothScene) scene =
+      cloth_scene_new (cloth_topology_new_grid (COLUMNS, ROWS, 0.3f, 0.2f), FPS,
+      2);
+  g_autoptr (ClothObserver) observer = NULL;
+  gfloat places[3 * VERTICES] = { 0 }, residuals[2][3 * VERTICES];
+  gfloat rest[3 * VERTICES];
+
+  model->time_step = 0.0001;
+  for (guint i = 0; i < VERTICES; i++) {
+    places[3 * i] = 0.1f * (i % COLUMNS);
+    places[3 * i + 1] = 0.1f * (i / COLUMNS);
+    scene->positions[3 * i] = places[3 * i];
+    scene->positions[3 * i + 1] = places[3 * i + 1];
+  }
+  observer = cloth_observer_new (scene, model, &options, &error);
+  g_assert_no_error (error);
+  for (guint turn = 0; turn < 2; turn++) {
+    cloth_observer_restart (observer);
+    for (guint frame = 0; frame < 2; frame++) {
+      cloth_observer_push (observer, (gdouble) frame / FPS, places, 0);
+      g_assert_true (cloth_observer_pop (observer, residuals[turn], &error));
+      g_assert_no_error (error);
+    }
+    cloth_observer_push (observer, 1e6, places, 0);
+    g_atomic_int_set (&stop, 1);
+    g_assert_false (cloth_observer_pop (observer, rest, &error));
+    g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED);
+    g_clear_error (&error);
+    g_atomic_int_set (&stop, 0);
+  }
+  g_assert_cmpmem (residuals[0], sizeof residuals[0], residuals[1],
+      sizeof residuals[1]);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -249,5 +292,6 @@ main (int argc, char **argv)
       test_observer);
   g_test_add_data_func ("/gaprays/observer/above", GINT_TO_POINTER (TRUE),
       test_observer);
+  g_test_add_func ("/gaprays/observer/stop", test_stop);
   return g_test_run ();
 }

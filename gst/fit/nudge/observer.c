@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/fit/error.h"
 #include "gst/fit/recording/recording.h"
 #include "gst/mesh/fill/fill.h"
 #include "gst/mesh/hold.h"
@@ -86,7 +87,7 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
     const ClothObserverOptions * options, GError ** error)
 {
   const ClothSimOptions sim_options = { FALSE, options->threads,
-    CLOTH_SIMD_BEST, options->seed
+    CLOTH_SIMD_BEST, options->seed, options->stop
   };
   const ClothModel *models[2] = { model, model };
   g_autoptr (ClothSim) sim = cloth_sim_new (scene, models, 2, &sim_options,
@@ -384,8 +385,18 @@ begin (ClothObserver * self, const Frame * frame, const gdouble * velocity)
 }
 
 static gboolean
+is_stopped (const ClothObserver * self)
+{
+  return self->options.stop && g_atomic_int_get (self->options.stop);
+}
+
+static gboolean
 check_state (ClothObserver * self, GError ** error)
 {
+  if (is_stopped (self)) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED, "stopped");
+    return FALSE;
+  }
   for (guint model = NUDGED; model <= FREE; model++) {
     gdouble since_s;
 
@@ -452,7 +463,7 @@ add_to_window (ClothObserver * self, const Frame * frame)
 /* @observer: an observer that has a frame waiting
  * @residuals: (out caller-allocates): recorded minus simulated, 3 numbers a vertex,
  *   metres; NaN when not seen. Of rays: what is across them
- * @error: #ClothSimError when the simulation blew up
+ * @error: #ClothSimError when the simulation blew up, #ClothFitError when it was stopped
  *
  * Goes on by one frame. The first frame's residual is 0 where it was seen, or its noise.
  *

@@ -20,6 +20,7 @@ typedef struct _ClothObserver ClothObserver;
  * @window_s: length of a scored window, seconds (0.3)
  * @seed: of what is random in effects
  * @threads: threads to use, 0 = one for each processor
+ * @stop: (nullable): atomic: as soon as it isn't 0, cloth_observer_pop () fails
  */
 typedef struct {
   gdouble gain;
@@ -27,6 +28,7 @@ typedef struct {
   gdouble window_s;
   guint64 seed;
   guint threads;
+  const gint *stop;
 } ClothObserverOptions;
 
 /* @from_s: when the window begins, seconds

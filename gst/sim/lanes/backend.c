@@ -436,7 +436,8 @@ group_advance (gpointer group, gdouble until_s, guint n_steps, guint stages)
   state->reach = cloth_lane_set (state->dt);
   half = cloth_lane_set (state->dt / 2.);
   state->stages = stages;
-  for (guint step = 1; step <= n_steps; step++) {
+  for (guint step = 1; step <= n_steps
+      && !cloth_body_is_stopped (state->body); step++) {
     state->steps_left = n_steps - step;
     if (state->implicit) {
       CLOTH_LANE_NAME (cloth_lane_implicit_solve) (state);
