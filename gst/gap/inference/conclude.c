@@ -212,9 +212,10 @@ fill_effects (ClothDiagnosis * d, const GArray * hypotheses)
   }
 }
 
-/* Explanations that have 95% together. */
+/* Explanations of the library that have 95% together, whatever acts besides. That nothing is lacking takes that nothing
+ * unknown acts. */
 static void
-fill_sets (ClothDiagnosis * d, const GArray * hypotheses, gdouble unknown)
+fill_sets (ClothDiagnosis * d, const GArray * hypotheses)
 {
   gdouble all = -INFINITY, listed = 0.;
 
@@ -227,13 +228,13 @@ fill_sets (ClothDiagnosis * d, const GArray * hypotheses, gdouble unknown)
         ClothGapHypothesis, i);
     const gdouble p = exp (-h->behind - all);
     ClothGapSet *set = cloth_gap_result_add_set (d->result,
-        CLOTH_GAP_RIVAL_NONE, p * (1. - unknown));
+        CLOTH_GAP_RIVAL_NONE, p);
 
     for (guint c = 0; c < h->n; c++)
       g_ptr_array_add (set->effects,
           (gpointer) candidate_of (d, h->candidates[c])->effect);
     if (!h->n)
-      d->result->rivals.none_acts = p * (1. - unknown);
+      d->result->rivals.none_acts = p * (1. - d->unknown_probability);
     listed += p;
   }
 }
@@ -470,7 +471,7 @@ cloth_diagnosis_conclude (ClothDiagnosis * d, const ClothGapBasis * basis,
   find_clamps (d, &g_array_index (hypotheses, ClothGapHypothesis, 0));
   d->result->rivals.none_acts = 0.;
   fill_effects (d, hypotheses);
-  fill_sets (d, hypotheses, d->unknown_probability);
+  fill_sets (d, hypotheses);
   fill_group (d);
   accept (d, hypotheses);
   fill_limits (d, basis);

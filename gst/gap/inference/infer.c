@@ -250,6 +250,21 @@ run_rounds (ClothDiagnosis * d, const ClothGapGathered * gathered,
   return TRUE;
 }
 
+/* The model with what was accepted of the likeliest explanation. */
+static ClothModel *
+make_accepted_model (const ClothDiagnosis * d, const ClothGapHypothesis * best)
+{
+  ClothGapHypothesis accepted;
+
+  cloth_gap_hypothesis_init (&accepted, d->candidates, NULL, d->accepted,
+      d->n_accepted);
+  for (guint k = 0; k < accepted.n_directions; k++)
+    for (guint i = 0; i < best->n_directions; i++)
+      if (best->directions[i] == accepted.directions[k])
+        accepted.at[k] = best->at[i];
+  return cloth_gap_hypothesis_make_model (d, &accepted);
+}
+
 /* @d: a diagnosis whose model is fitted
  * @error: #ClothSimError or #ClothFitError
  *
@@ -283,7 +298,7 @@ cloth_diagnosis_infer (ClothDiagnosis * d, GError ** error)
   }
   cloth_gap_gathered_clear (&gathered, d->n_takes);
   if (!failed && d->n_accepted) {
-    g_autoptr (ClothModel) start = cloth_gap_hypothesis_make_model (d,
+    g_autoptr (ClothModel) start = make_accepted_model (d,
         &g_array_index (hypotheses, ClothGapHypothesis, 0));
 
     cloth_diagnosis_begin_part (d, 0.75, 0.85, 0.3,

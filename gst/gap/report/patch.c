@@ -40,7 +40,8 @@ add_change (ClothGapResult * result, const ClothModel * given,
  * @given: the model that the user gave
  *
  * Adds what to change in @given to make it the result's: effects first, then free numbers;
- * with a twin effects only, as the free numbers are not those of the user's simulator.
+ * with a twin only effects that @given has not, as all else was fitted to the twin: the user's
+ * simulator does that already.
  */
 void
 cloth_gap_result_fill_patch (ClothGapResult * result, const ClothModel * given)
@@ -51,6 +52,8 @@ cloth_gap_result_fill_patch (ClothGapResult * result, const ClothModel * given)
     const ClothEffect *effect = g_array_index (effects, ClothModelEffect,
         i).effect;
 
+    if (result->has_simulated && has_effect (given, effect))
+      continue;
     for (guint k = 0; k < effect->n_parameters; k++) {
       g_autofree gchar *name = g_strdup_printf ("effects.%s.%s", effect->id,
           effect->parameters[k].name);
