@@ -150,6 +150,14 @@ load_twin (ClothDiagnosis * d, ClothTake * take, ClothRecording * recorded,
       || !(sha256 = cloth_take_sha256 (take, error)))
     return FALSE;
   see_alike (recorded, twin);
+  if (twin->between > 0.) {
+    g_autofree gchar *note =
+        g_strdup_printf ("Between its frames %s is known to "
+        "%.2g m only, which counts as noise; written at the times of %s it would "
+        "tell more.", twin->name, twin->between, recorded->name);
+
+    cloth_gap_result_add_note (d->result, note);
+  }
   more_s = cloth_take_get_time (take, n - 1) -
       recorded->times[recorded->n_frames - 1] + recorded->times[0] -
       cloth_take_get_time (take, 0);

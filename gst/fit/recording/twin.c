@@ -32,6 +32,9 @@
 #define N_CUBIC 4
 /* Π |t − tⱼ| midway between even frames, in fourth powers of the time between them. */
 #define MIDWAY (9. / 16.)
+/* What is not known between its frames is at most this share of how far a twin is from the recording, or no more than
+ * noise: a hundredth of the gap's square. */
+#define LEAST_KNOWN 0.1
 /* How often paths that differ by noise alone are taken for others. */
 #define FALSE_ALARM 0.01
 
@@ -343,9 +346,25 @@ find_error (const Twin * t, guint stride)
   return count > 0. ? sqrt (fmax (sum / count, 0.)) : NAN;
 }
 
-/* What lies between frames must be known to better than the recording's noise. */
+/* How far a twin is from what was recorded, RMS of a coordinate, m. */
+static gdouble
+find_distance (const ClothRecording * twin, const ClothRecording * r)
+{
+  gdouble sum = 0., count = 0.;
+
+  for (gsize i = 0; i < 3 * (gsize) r->n * r->n_frames; i++) {
+    if (twin->seen[i / 3] == 0.)
+      continue;
+    sum += (twin->y[i] - r->y[i]) * (twin->y[i] - r->y[i]);
+    count++;
+  }
+  return count > 0. ? sqrt (sum / count) : 0.;
+}
+
+/* What lies between frames must be known to better than the recording's noise, or well enough to tell how far the
+ * twin is from the recording: then it counts as noise. */
 static gboolean
-check_rate (const Twin * t, GError ** error)
+check_rate (const Twin * t, ClothRecording * twin, GError ** error)
 {
   const ClothRecording *r = t->recorded;
   const guint last = t->n_frames - 1;
@@ -363,6 +382,10 @@ check_rate (const Twin * t, GError ** error)
       fmax (two / 16., four > two ? two * two / four : isnan (four) ? 0. : two);
   ratio = off * t->moments[worst].width / r->sigma;
   if (!(ratio > 1.))
+    return TRUE;
+  twin->between = ratio * r->sigma;
+  twin->sigma = hypot (twin->sigma, twin->between);
+  if (twin->between < LEAST_KNOWN * find_distance (twin, r))
     return TRUE;
   if (r->times[worst] < t->times[0] || r->times[worst] > t->times[last])
     return refuse (t, error, "it has no frame at %g s, at the recording's %s, "
@@ -587,7 +610,8 @@ twin_init (Twin * t, ClothTake * take, const ClothRecording * recorded,
  *   times, with the same clamps, gravity and obstacles
  * @recorded: what was recorded
  * @error: #ClothFitError when it is of another scene, cloth or time, diverged, or was written too
- *   seldom to say where the cloth is between its frames to better than the noise; or what
+ *   seldom to say where the cloth is between its frames to better than the noise, or than a tenth of how far it is
+ *   from the recording; or what
  *   reading it says
  *
  * What was not seen counts as not simulated and is bridged alike, so that an observer does the
@@ -623,7 +647,8 @@ cloth_recording_new_twin (ClothTake * simulated,
   twin->y = g_new (gdouble, 3 * all);
   twin->velocity = g_new (gdouble, 3 * all);
   fill_positions (&t, twin);
-  if (!cloth_recording_check (twin, TRUE, error) || !check_rate (&t, error)
+  if (!cloth_recording_check (twin, TRUE, error)
+      || !check_rate (&t, twin, error)
       || !check_held (&t, recorded->scene, t.scene, "the recording", "it",
           error)
       || !check_held (&t, t.scene, recorded->scene, "it", "the recording",
