@@ -11,6 +11,7 @@
 #include <gst/video/video.h>
 
 #include "elements/gstclothproperties.h"
+#include "elements/gstclothsyncgaps.h"
 #include "elements/gstclothsyncheads.h"
 #include "elements/gstclothsyncmessages.h"
 
@@ -50,6 +51,7 @@ typedef struct
   GstClockTimeDiff last_time;
   GstClockTime last_tolerance;
   guint64 last_mask;
+  GstClothSyncGaps gaps;
 } GstClothSyncPrivate;
 
 /* *INDENT-OFF* */
@@ -360,36 +362,6 @@ gst_cloth_sync_take_caps (GstClothSync * self)
   return taken;
 }
 
-static GstBuffer *
-gst_cloth_sync_clip (GstAggregator * agg, GstAggregatorPad * aggpad,
-    GstBuffer * buffer)
-{
-  GstClockTime start = GST_BUFFER_PTS (buffer);
-  GstClockTime stop = GST_CLOCK_TIME_NONE;
-  guint64 new_start, new_stop;
-
-  if (!GST_CLOCK_TIME_IS_VALID (start)
-      || aggpad->segment.format != GST_FORMAT_TIME) {
-    return buffer;
-  }
-  if (GST_BUFFER_DURATION_IS_VALID (buffer)
-      && GST_BUFFER_DURATION (buffer) < GST_CLOCK_TIME_NONE - start) {
-    stop = start + GST_BUFFER_DURATION (buffer);
-  }
-  if (!gst_segment_clip (&aggpad->segment, GST_FORMAT_TIME, start, stop,
-          &new_start, &new_stop)) {
-    gst_buffer_unref (buffer);
-    return NULL;
-  }
-  if (new_start != start) {
-    buffer = gst_buffer_make_writable (buffer);
-    GST_BUFFER_PTS (buffer) = new_start;
-    GST_BUFFER_DURATION (buffer) =
-        GST_CLOCK_TIME_IS_VALID (new_stop) ? new_stop - new_start : new_stop;
-  }
-  return buffer;
-}
-
 static GstFlowReturn
 gst_cloth_sync_update_src_caps (GstAggregator * agg, GstCaps * downstream,
     GstCaps ** caps)
@@ -420,6 +392,7 @@ gst_cloth_sync_restart (GstClothSync * self)
   g_autoptr (GList) pads = NULL;
 
   priv->has_last = FALSE;
+  priv->gaps.told = GST_CLOCK_STIME_NONE;
   GST_OBJECT_LOCK (self);
   priv->n_lately = priv->n_lacking = 0;
   GST_AGGREGATOR_PAD (GST_AGGREGATOR_SRC_PAD (self))->segment.position =
@@ -823,13 +796,14 @@ gst_cloth_sync_drop (GstClothSync * self, GstClothSyncPad * pad,
 }
 
 /* Takes away heads that no set will want: frames too late for a set that has gone, and
- * gaps that end before the set at @first closes, or with @first %NULL all of them. TRUE
+ * gaps that end before the set at @first closes, or with @first %NULL those that end first. TRUE
  * when one was taken: what follows it has to be looked at first. */
 static gboolean
 gst_cloth_sync_discard (GstClothSync * self, GstClothSyncHeads * heads,
     const GstClockTimeDiff * first, GstClockTime tolerance)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  const GstClockTimeDiff gap_end = gst_cloth_sync_heads_get_gap_end (heads);
   gboolean discarded = FALSE;
   guint i;
 
@@ -841,9 +815,10 @@ gst_cloth_sync_discard (GstClothSync * self, GstClothSyncHeads * heads,
       continue;
     }
     if (heads->gap[i]) {
-      if (!first
-          || gst_cloth_sync_is_within (gst_cloth_sync_heads_get_end (heads, i),
-              *first, tolerance)) {
+      const GstClockTimeDiff end = gst_cloth_sync_heads_get_end (heads, i);
+
+      if (first ? gst_cloth_sync_is_within (end, *first, tolerance) :
+          end == gap_end) {
         gst_cloth_sync_discard_head (self, heads->pad[i]);
         discarded = TRUE;
       }
@@ -916,6 +891,7 @@ gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
     GST_OBJECT_UNLOCK (self);
   }
   if (GST_CLOCK_STIME_IS_VALID (time)) {
+    gst_cloth_sync_gaps_note (&priv->gaps, time, duration);
     GST_OBJECT_LOCK (self);
     pts = gst_segment_position_from_running_time (segment, GST_FORMAT_TIME,
         (guint64) time);
@@ -958,7 +934,7 @@ gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
   if (ret != GST_FLOW_OK || !out) {
     gst_clear_buffer (&out);
     if (ret == GST_FLOW_OK && GST_CLOCK_TIME_IS_VALID (pts)) {
-      gst_cloth_sync_say_gap (GST_AGGREGATOR (self), pts, duration);
+      gst_cloth_sync_gaps_say (&priv->gaps, agg, pts, duration);
     }
     return ret;
   }
@@ -1068,6 +1044,9 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
     }
     goto done;
   }
+  if (!has_first && heads.n_waiting == 0) {
+    gst_cloth_sync_gaps_pass (&priv->gaps, agg, &heads);
+  }
   if (gst_cloth_sync_discard (self, &heads, has_first ? &first : NULL,
           tolerance) || !has_first) {
     goto done;
@@ -1143,6 +1122,7 @@ gst_cloth_sync_finalize (GObject * object)
   GstClothSyncPrivate *priv =
       gst_cloth_sync_get_instance_private (GST_CLOTH_SYNC (object));
 
+  gst_cloth_sync_gaps_clear (&priv->gaps);
   g_mutex_clear (&priv->release_lock);
   G_OBJECT_CLASS (gst_cloth_sync_parent_class)->finalize (object);
 }
@@ -1166,7 +1146,7 @@ gst_cloth_sync_class_init (GstClothSyncClass * klass)
   agg_class->create_new_pad = gst_cloth_sync_create_new_pad;
   agg_class->sink_event = gst_cloth_sync_sink_event;
   agg_class->sink_event_pre_queue = gst_cloth_sync_sink_event_pre_queue;
-  agg_class->clip = gst_cloth_sync_clip;
+  agg_class->clip = gst_cloth_sync_pad_clip;
   agg_class->get_next_time = gst_cloth_sync_get_next_time;
   agg_class->aggregate = gst_cloth_sync_aggregate;
   agg_class->update_src_caps = gst_cloth_sync_update_src_caps;
@@ -1195,5 +1175,6 @@ gst_cloth_sync_init (GstClothSync * self)
 
   *priv = defaults;
   g_mutex_init (&priv->release_lock);
+  gst_cloth_sync_gaps_init (&priv->gaps, GST_AGGREGATOR_SRC_PAD (self));
   g_object_set (self, "latency", (guint64) LATENCY, NULL);
 }

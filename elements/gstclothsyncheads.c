@@ -109,6 +109,19 @@ gst_cloth_sync_heads_get_end (const GstClothSyncHeads * heads, guint i)
 }
 
 GstClockTimeDiff
+gst_cloth_sync_heads_get_gap_end (const GstClothSyncHeads * heads)
+{
+  GstClockTimeDiff end = G_MAXINT64;
+
+  for (guint i = 0; i < heads->n; i++) {
+    if (heads->gap[i] && GST_CLOCK_STIME_IS_VALID (heads->time[i])) {
+      end = MIN (end, gst_cloth_sync_heads_get_end (heads, i));
+    }
+  }
+  return end;
+}
+
+GstClockTimeDiff
 gst_cloth_sync_heads_silent_at (const GstClothSyncHeads * heads, guint i)
 {
   GstClothSyncPad *pad = heads->pad[i];

@@ -38,6 +38,10 @@ void gst_cloth_sync_heads_release (GstClothSyncHeads * heads);
 GstClockTimeDiff gst_cloth_sync_heads_get_end (const GstClothSyncHeads * heads,
     guint i);
 
+/* Returns: when the first of the gaps ends; the largest time when there is none */
+GstClockTimeDiff gst_cloth_sync_heads_get_gap_end (const GstClothSyncHeads *
+    heads);
+
 /* Returns: when pad @i will have been silent for long; GST_CLOCK_STIME_NONE: there is none, or
  * it has a head, or nothing is expected of it, or its silence is said already */
 GstClockTimeDiff gst_cloth_sync_heads_silent_at (const GstClothSyncHeads *

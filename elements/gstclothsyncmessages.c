@@ -228,22 +228,3 @@ gst_cloth_sync_pad_get_stats (GstClothSyncPad * pad)
       "implausible", G_TYPE_UINT64, pad->implausible,
       "silent", G_TYPE_BOOLEAN, pad->silent, NULL);
 }
-
-void
-gst_cloth_sync_say_gap (GstAggregator * agg, GstClockTime pts,
-    GstClockTime duration)
-{
-  GstPad *srcpad = GST_AGGREGATOR_SRC_PAD (agg);
-  g_autoptr (GstEvent) segment = NULL;
-
-  if (!gst_pad_has_current_caps (srcpad)) {
-    return;
-  }
-  segment = gst_pad_get_sticky_event (srcpad, GST_EVENT_SEGMENT, 0);
-  if (!segment) {
-    /* the aggregator sends it with its first buffer only */
-    gst_pad_push_event (srcpad,
-        gst_event_new_segment (&GST_AGGREGATOR_PAD (srcpad)->segment));
-  }
-  gst_pad_push_event (srcpad, gst_event_new_gap (pts, duration));
-}

@@ -48,9 +48,4 @@ void gst_cloth_sync_say_lost (GstElement * element,
 /* Returns: (transfer full): the counts of the pad; take the element's object lock */
 GstStructure *gst_cloth_sync_pad_get_stats (GstClothSyncPad * pad);
 
-/* Says downstream that nothing comes for a set. Without it an element that joins this stream with
- * another one would wait, and fill the queues of the other, for ever. */
-void gst_cloth_sync_say_gap (GstAggregator * agg, GstClockTime pts,
-    GstClockTime duration);
-
 G_END_DECLS

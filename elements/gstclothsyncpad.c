@@ -165,6 +165,36 @@ gst_cloth_sync_pad_hold (GstClothSyncPad * pad, GstBuffer * buffer,
   GST_OBJECT_UNLOCK (pad);
 }
 
+GstBuffer *
+gst_cloth_sync_pad_clip (GstAggregator * agg, GstAggregatorPad * aggpad,
+    GstBuffer * buffer)
+{
+  GstClockTime start = GST_BUFFER_PTS (buffer);
+  GstClockTime stop = GST_CLOCK_TIME_NONE;
+  guint64 new_start, new_stop;
+
+  if (!GST_CLOCK_TIME_IS_VALID (start)
+      || aggpad->segment.format != GST_FORMAT_TIME) {
+    return buffer;
+  }
+  if (GST_BUFFER_DURATION_IS_VALID (buffer)
+      && GST_BUFFER_DURATION (buffer) < GST_CLOCK_TIME_NONE - start) {
+    stop = start + GST_BUFFER_DURATION (buffer);
+  }
+  if (!gst_segment_clip (&aggpad->segment, GST_FORMAT_TIME, start, stop,
+          &new_start, &new_stop)) {
+    gst_buffer_unref (buffer);
+    return NULL;
+  }
+  if (new_start != start) {
+    buffer = gst_buffer_make_writable (buffer);
+    GST_BUFFER_PTS (buffer) = new_start;
+    GST_BUFFER_DURATION (buffer) =
+        GST_CLOCK_TIME_IS_VALID (new_stop) ? new_stop - new_start : new_stop;
+  }
+  return buffer;
+}
+
 gboolean
 gst_cloth_sync_pad_check_segment (GstClothSyncPad * pad, GstElement * element,
     GstEvent * event)

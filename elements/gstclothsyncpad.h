@@ -122,6 +122,10 @@ GstClockTimeDiff gst_cloth_sync_pad_silent_since (GstClothSyncPad * pad);
 /* Returns: how long a pad gives nothing before that is said */
 GstClockTime gst_cloth_sync_pad_patience (const GstClothSyncPad * pad);
 
+/* Method clip of the aggregator: what of @buffer is within the pad's segment, %NULL for none. */
+GstBuffer *gst_cloth_sync_pad_clip (GstAggregator * agg,
+    GstAggregatorPad * aggpad, GstBuffer * buffer);
+
 /* Returns: whether times can be told by the segment of @event; else @element has posted the
  * error */
 gboolean gst_cloth_sync_pad_check_segment (GstClothSyncPad * pad,

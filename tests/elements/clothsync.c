@@ -251,6 +251,128 @@ GST_START_TEST (test_gap_for_incomplete)
 
 GST_END_TEST;
 
+/* The next GAP; the SEGMENT events until then are counted. */
+static void
+expect_gap (Bench * b, GstClockTime pts, GstClockTime duration,
+    guint32 seqnum, guint * n_segments)
+{
+  gboolean found = FALSE;
+
+  while (!found) {
+    g_autoptr (GstEvent) event = gst_harness_pull_event (b->src);
+    GstClockTime is_pts, is_duration;
+
+    fail_unless (event != NULL, "no gap at %" GST_TIME_FORMAT,
+        GST_TIME_ARGS (pts));
+    found = GST_EVENT_TYPE (event) == GST_EVENT_GAP;
+    if (GST_EVENT_TYPE (event) == GST_EVENT_SEGMENT) {
+      (*n_segments)++;
+    }
+    if (found) {
+      gst_event_parse_gap (event, &is_pts, &is_duration);
+      fail_unless_equals_uint64 (is_pts, pts);
+      fail_unless_equals_uint64 (is_duration, duration);
+    }
+    if (found || GST_EVENT_TYPE (event) == GST_EVENT_SEGMENT) {
+      fail_unless_equals_int (gst_event_get_seqnum (event), seqnum);
+    }
+  }
+}
+
+static void
+new_segment (Bench * b, guint i, guint32 seqnum)
+{
+  GstSegment segment;
+  GstEvent *event;
+
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  event = gst_event_new_segment (&segment);
+  gst_event_set_seqnum (event, seqnum);
+  give (b, i, event);
+}
+
+/* What all pads say nothing comes of goes on, and nothing is told twice. */
+GST_START_TEST (test_gap_of_all)
+{
+  const guint32 seqnum = gst_util_seqnum_next ();
+  guint n_segments = 0;
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  new_segment (&b, 0, seqnum);
+  new_segment (&b, 1, seqnum);
+  /* before any frame; the second pad's gap is longer than the first one's */
+  gap (&b, 0, 0, 40 * MS);
+  gap (&b, 1, 0, 140 * MS);
+  expect_gap (&b, 0, 40 * MS, seqnum, &n_segments);
+  fail_unless_equals_int (n_segments, 1);
+  /* it is still known of then: a frame within it waits for nothing */
+  push (&b, 0, 40 * MS);
+  expect (&b, 40 * MS, 1);
+  /* the frame lasts until 73 ms */
+  gap (&b, 0, 60 * MS, 40 * MS);
+  expect_gap (&b, 73 * MS, 27 * MS, seqnum, &n_segments);
+  gap (&b, 0, 100 * MS, 60 * MS);
+  expect_gap (&b, 100 * MS, 40 * MS, seqnum, &n_segments);
+  /* one that doesn't say how long it is */
+  gap (&b, 1, 150 * MS, GST_CLOCK_TIME_NONE);
+  expect_gap (&b, 140 * MS, 10 * MS, seqnum, &n_segments);
+  /* one pad alone is all that there are */
+  eos (&b, 1);
+  expect_gap (&b, 150 * MS, 10 * MS, seqnum, &n_segments);
+  gap (&b, 0, 200 * MS, GST_CLOCK_TIME_NONE);
+  expect_gap (&b, 200 * MS, GST_CLOCK_TIME_NONE, seqnum, &n_segments);
+  push (&b, 0, 200 * MS);
+  expect (&b, 200 * MS, 1);
+  eos (&b, 0);
+  expect_eos (&b);
+  fail_unless_equals_int (n_segments, 1);
+  fail_unless_equals_int (gst_harness_buffers_received (b.src), 2);
+  fail_unless_equals_uint64 (stat_of (&b, "dropped"), 0);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* One segment goes out, with the number of the seek that it is of, whether a set or a gap is first. */
+GST_START_TEST (test_gap_numbers)
+{
+  for (guint is_set = 0; is_set < 2; is_set++) {
+    guint n_segments = 0;
+    Bench b;
+
+    bench_init (&b, 1, FALSE);
+    for (guint k = 0; k < 2; k++) {
+      const guint32 seqnum = gst_util_seqnum_next ();
+
+      if (k > 0) {
+        GstEvent *start = gst_event_new_flush_start ();
+        GstEvent *stop = gst_event_new_flush_stop (TRUE);
+
+        gst_event_set_seqnum (start, seqnum);
+        gst_event_set_seqnum (stop, seqnum);
+        give (&b, 0, start);
+        give (&b, 0, stop);
+      }
+      new_segment (&b, 0, seqnum);
+      if (is_set) {
+        push (&b, 0, 0);
+        expect (&b, 0, 1);
+      }
+      gap (&b, 0, 33 * MS, 33 * MS);
+      expect_gap (&b, 33 * MS, 33 * MS, seqnum, &n_segments);
+      push (&b, 0, 66 * MS);
+      expect (&b, 66 * MS, 1);
+      gap (&b, 0, 99 * MS, 33 * MS);
+      expect_gap (&b, 99 * MS, 33 * MS, seqnum, &n_segments);
+      fail_unless_equals_int (n_segments, k + 1);
+    }
+    bench_clear (&b);
+  }
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_min_views)
 {
   Bench b;
@@ -426,6 +548,8 @@ clothsync_suite (void)
   tcase_add_test (tc, test_gap);
   tcase_add_test (tc, test_one_eos);
   tcase_add_test (tc, test_gap_for_incomplete);
+  tcase_add_test (tc, test_gap_of_all);
+  tcase_add_test (tc, test_gap_numbers);
   tcase_add_test (tc, test_min_views);
   tcase_add_test (tc, test_never_enough_views);
   tcase_add_test (tc, test_one_pad);
