@@ -301,16 +301,15 @@ gst_cloth_sync_sink_event (GstAggregator * agg, GstAggregatorPad * aggpad,
   GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
   GstClothSyncPad *pad = GST_CLOTH_SYNC_PAD (aggpad);
 
-  if (GST_EVENT_TYPE (event) == GST_EVENT_CAPS
-      && gst_cloth_sync_pad_is_holding (pad)) {
-    /* what is held is of the caps before */
-    gst_clear_event (&pad->caps);
-    pad->caps = event;
-    return TRUE;
-  }
   if (GST_EVENT_TYPE (event) == GST_EVENT_CAPS) {
     GstCaps *caps;
 
+    gst_clear_event (&pad->caps);
+    if (gst_cloth_sync_pad_is_holding (pad)) {
+      /* what is held is of the caps before */
+      pad->caps = event;
+      return TRUE;
+    }
     gst_cloth_sync_forget_released (self);
     gst_event_parse_caps (event, &caps);
     gst_cloth_sync_pad_set_period (pad, GST_ELEMENT (self), caps);
@@ -340,12 +339,13 @@ gst_cloth_sync_sink_event_pre_queue (GstAggregator * agg,
       (gst_cloth_sync_parent_class)->sink_event_pre_queue (agg, aggpad, event);
 }
 
-/* Handles the caps that have waited for a held frame to go. FALSE: they were refused. */
-static gboolean
+/* Handles the caps that have waited for a held frame to go, or to be flushed. Where there are any
+ * the source pad has to be negotiated before a set is made: more data are needed. */
+static GstFlowReturn
 gst_cloth_sync_take_caps (GstClothSync * self)
 {
   g_autoptr (GList) pads = NULL;
-  gboolean taken = TRUE;
+  GstFlowReturn ret = GST_FLOW_OK;
 
   GST_OBJECT_LOCK (self);
   pads = g_list_copy_deep (GST_ELEMENT (self)->sinkpads,
@@ -355,11 +355,15 @@ gst_cloth_sync_take_caps (GstClothSync * self)
     g_autoptr (GstClothSyncPad) pad = l->data;
 
     if (pad->caps && !gst_cloth_sync_pad_is_holding (pad)) {
-      taken &= gst_cloth_sync_sink_event (GST_AGGREGATOR (self),
-          GST_AGGREGATOR_PAD (pad), g_steal_pointer (&pad->caps));
+      if (!gst_cloth_sync_sink_event (GST_AGGREGATOR (self),
+              GST_AGGREGATOR_PAD (pad), g_steal_pointer (&pad->caps))) {
+        ret = GST_FLOW_NOT_NEGOTIATED;
+      } else if (ret == GST_FLOW_OK) {
+        ret = GST_AGGREGATOR_FLOW_NEED_DATA;
+      }
     }
   }
-  return taken;
+  return ret;
 }
 
 static GstFlowReturn
@@ -432,6 +436,7 @@ gst_cloth_sync_start (GstAggregator * agg)
     pad->warned_ahead = pad->warned_back = FALSE;
     pad->warned_untimed = pad->warned_late = FALSE;
     pad->used = pad->missing = pad->dropped = pad->implausible = 0;
+    gst_clear_event (&pad->caps);
   }
   GST_OBJECT_UNLOCK (self);
   priv->is_live = FALSE;
@@ -983,7 +988,7 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
 {
   GstClothSync *self = GST_CLOTH_SYNC (agg);
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
-  GstFlowReturn ret = GST_AGGREGATOR_FLOW_NEED_DATA;
+  GstFlowReturn ret;
   GstClockTimeDiff first = 0;
   gboolean has_first = FALSE;
   GstClockTime tolerance;
@@ -993,9 +998,11 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
   guint i;
 
   gst_cloth_sync_forget_released (self);
-  if (!gst_cloth_sync_take_caps (self)) {
-    return GST_FLOW_NOT_NEGOTIATED;
+  ret = gst_cloth_sync_take_caps (self);
+  if (ret != GST_FLOW_OK) {
+    return ret;
   }
+  ret = GST_AGGREGATOR_FLOW_NEED_DATA;
   GST_OBJECT_LOCK (self);
   tolerance = priv->effective;
   GST_OBJECT_UNLOCK (self);

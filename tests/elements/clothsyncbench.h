@@ -19,6 +19,7 @@ G_DECLARE_FINAL_TYPE (TestSync, test_sync, TEST, SYNC, GstClothSync)
        GstClothSync parent;
 
        guint n_caps, n_gone, n_resets;
+       gint mark;               /* of the caps that a pad had last */
        guint64 with_caps;
      };
 G_DEFINE_TYPE (TestSync, test_sync, GST_TYPE_CLOTH_SYNC);
@@ -39,6 +40,8 @@ G_DEFINE_TYPE (TestSync, test_sync, GST_TYPE_CLOTH_SYNC);
     return FALSE;
   }
   self->n_caps++;
+  self->mark = 0;
+  gst_structure_get_int (gst_caps_get_structure (caps, 0), "mark", &self->mark);
   self->with_caps |= G_GUINT64_CONSTANT (1) << index;
   return TRUE;
 }
@@ -48,7 +51,8 @@ test_sync_negotiate_src (GstClothSync * sync, GstCaps * downstream,
     GstCaps ** caps)
 {
   *caps = gst_caps_new_simple ("test/x-sets", "pads", G_TYPE_INT,
-      (gint) g_bit_storage (TEST_SYNC (sync)->with_caps), NULL);
+      (gint) g_bit_storage (TEST_SYNC (sync)->with_caps),
+      "mark", G_TYPE_INT, TEST_SYNC (sync)->mark, NULL);
   return GST_FLOW_OK;
 }
 
@@ -56,8 +60,13 @@ static inline GstFlowReturn
 test_sync_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out)
 {
+  g_autoptr (GstCaps) caps =
+      gst_pad_get_current_caps (GST_AGGREGATOR_SRC_PAD (sync));
   guint i, writable = 0;
+  gint mark = -1;
 
+  gst_structure_get_int (gst_caps_get_structure (caps, 0), "mark", &mark);
+  fail_unless_equals_int (mark, TEST_SYNC (sync)->mark);
   for (i = 0; i < n; i++) {
     fail_unless_equals_int (views[i] != NULL, mask >> i & 1);
     if (views[i]) {

@@ -313,7 +313,7 @@ GST_START_TEST (test_caps)
   expect (&b, 0, 1);
   fail_unless_equals_int (TEST_SYNC (b.sync)->n_caps, 1);
   push (&b, 0, 3600 * GST_SECOND);
-  caps (&b, 0, "test/x-frames,framerate=60/1");
+  caps (&b, 0, "test/x-frames,framerate=60/1,mark=1");
   settle (&b, 0);
   fail_unless_equals_int (TEST_SYNC (b.sync)->n_caps, 1);
   push (&b, 0, 3600 * GST_SECOND + FRAME);
@@ -331,6 +331,73 @@ GST_START_TEST (test_caps)
 
     fail_unless (error != NULL);
   }
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+static void
+hold_with_caps (Bench * b)
+{
+  bench_init (b, 1, FALSE);
+  push (b, 0, 0);
+  expect (b, 0, 1);
+  push (b, 0, 3600 * GST_SECOND);
+  caps (b, 0, "test/x-frames,framerate=30/1,mark=1");
+  settle (b, 0);
+  fail_unless_equals_int (TEST_SYNC (b->sync)->n_caps, 1);
+}
+
+static void
+begin_anew (Bench * b)
+{
+  GstSegment segment;
+
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  give (b, 0, gst_event_new_segment (&segment));
+}
+
+/* The frame that caps wait for is flushed: they count at once, unless newer ones come, and
+ * those stay. */
+GST_START_TEST (test_caps_flushed)
+{
+  for (gint newer = 0; newer < 2; newer++) {
+    Bench b;
+
+    hold_with_caps (&b);
+    give (&b, 0, gst_event_new_flush_start ());
+    give (&b, 0, gst_event_new_flush_stop (TRUE));
+    begin_anew (&b);
+    if (newer) {
+      caps (&b, 0, "test/x-frames,framerate=30/1,mark=2");
+    }
+    push (&b, 0, 0);
+    push (&b, 0, FRAME);
+    expect (&b, 0, 1);
+    expect (&b, FRAME, 1);
+    fail_unless_equals_int (TEST_SYNC (b.sync)->mark, newer ? 2 : 1);
+    fail_unless_equals_int (TEST_SYNC (b.sync)->n_caps, 2);
+    bench_clear (&b);
+  }
+}
+
+GST_END_TEST;
+
+/* What waits is of the stream before. */
+GST_START_TEST (test_caps_restarted)
+{
+  Bench b;
+
+  hold_with_caps (&b);
+  fail_unless_equals_int (gst_element_set_state (b.sync, GST_STATE_READY),
+      GST_STATE_CHANGE_SUCCESS);
+  gst_element_set_state (b.sync, GST_STATE_PLAYING);
+  give (&b, 0, gst_event_new_stream_start ("again"));
+  begin_anew (&b);
+  push (&b, 0, 0);
+  expect (&b, 0, 1);
+  /* the harness has sent its caps again, and no others count */
+  fail_unless_equals_int (TEST_SYNC (b.sync)->n_caps, 2);
   bench_clear (&b);
 }
 
@@ -650,6 +717,8 @@ clothsynctimes_suite (void)
   tcase_add_test (tc, test_untimed);
   tcase_add_test (tc, test_segments);
   tcase_add_test (tc, test_caps);
+  tcase_add_test (tc, test_caps_flushed);
+  tcase_add_test (tc, test_caps_restarted);
   tcase_add_test (tc, test_release);
   tcase_add_test (tc, test_one_jumps);
   tcase_add_test (tc, test_pause_at_the_end);
