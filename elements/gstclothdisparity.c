@@ -528,11 +528,10 @@ gst_stereo_match_match (GstStereoMatch * self, const ClothImage * images,
   const GstVideoInfo *info = &self->info[HEAD];
   const ClothImage mask =
       { self->mask, info->width, info->height, info->width };
-  g_autoptr (GstPad) pad =
-      gst_element_get_static_pad (GST_ELEMENT (self), "sink_0");
   const guint64 number =
-      gst_cloth_number_picture (&GST_AGGREGATOR_PAD (pad)->segment,
-      GST_VIDEO_INFO_FPS_N (info), GST_VIDEO_INFO_FPS_D (info), buffer,
+      gst_cloth_number_picture (gst_cloth_sync_get_segment (GST_CLOTH_SYNC
+          (self), HEAD), GST_VIDEO_INFO_FPS_N (info),
+      GST_VIDEO_INFO_FPS_D (info), buffer,
       self->count);
   g_autoptr (GError) error = NULL;
   GstClothDisparity *disparity;

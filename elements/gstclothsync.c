@@ -52,6 +52,7 @@ typedef struct
   GstClockTime last_tolerance;
   guint64 last_mask;
   GstClothSyncGaps gaps;
+  GstSegment segment[GST_CLOTH_SYNC_MAX_PADS];  /* of the set's views */
 } GstClothSyncPrivate;
 
 /* *INDENT-OFF* */
@@ -248,6 +249,14 @@ gst_cloth_sync_set_pad_offset (GstClothSync * self, guint index,
   priv->offset[index] = offset;
   GST_OBJECT_UNLOCK (self);
   gst_cloth_sync_update_timing (self);
+}
+
+const GstSegment *
+gst_cloth_sync_get_segment (GstClothSync * self, guint index)
+{
+  GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+
+  return &priv->segment[index];
 }
 
 static void
@@ -887,6 +896,9 @@ gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
       continue;
     }
     n_views++;
+    GST_OBJECT_LOCK (heads->pad[i]);
+    priv->segment[i] = GST_AGGREGATOR_PAD (heads->pad[i])->segment;
+    GST_OBJECT_UNLOCK (heads->pad[i]);
     duration = MIN (duration, GST_BUFFER_DURATION (views[i]));
     GST_OBJECT_LOCK (self);
     heads->pad[i]->used++;

@@ -67,4 +67,12 @@ void gst_cloth_sync_add_always_pad (GstClothSync * sync,
 void gst_cloth_sync_set_pad_offset (GstClothSync * sync, guint index,
     GstClockTimeDiff offset);
 
+/* @sync: the element, in its process_set
+ * @index: of a view of the set
+ *
+ * Returns: (transfer none): the segment of the view's own time stamps. Its pad may be gone.
+ */
+const GstSegment *gst_cloth_sync_get_segment (GstClothSync * sync,
+    guint index);
+
 G_END_DECLS

@@ -485,6 +485,96 @@ GST_START_TEST (test_early_end)
 
 GST_END_TEST;
 
+/* Memory whose reading takes the head's pad away. */
+typedef struct
+{
+  GstMemory memory;
+  Bench *bench;
+  guint8 *data;
+} Trap;
+
+static gpointer
+trap_map (GstMemory * memory, gsize size, GstMapFlags flags)
+{
+  Trap *trap = (Trap *) memory;
+  GstElement *element = trap->bench->element;
+  g_autoptr (GstPad) pad = gst_element_get_static_pad (element, "sink_0");
+
+  if (pad) {
+    gst_element_release_request_pad (element, pad);
+  }
+  return trap->data;
+}
+
+static void
+trap_unmap (GstMemory * memory)
+{
+}
+
+static void
+trap_free (GstAllocator * allocator, GstMemory * memory)
+{
+  g_free (((Trap *) memory)->data);
+  g_free (memory);
+}
+
+typedef GstAllocator TrapAllocator;
+typedef GstAllocatorClass TrapAllocatorClass;
+GType trap_allocator_get_type (void);
+G_DEFINE_TYPE (TrapAllocator, trap_allocator, GST_TYPE_ALLOCATOR);
+
+static void
+trap_allocator_class_init (TrapAllocatorClass * klass)
+{
+  klass->free = trap_free;
+}
+
+static void
+trap_allocator_init (TrapAllocator * allocator)
+{
+  allocator->mem_type = "trap";
+  allocator->mem_map = trap_map;
+  allocator->mem_unmap = trap_unmap;
+}
+
+/* The head's pad goes while its picture is looked at: that has its disparities, and the number
+ * of its time. */
+GST_START_TEST (test_head_released)
+{
+  g_autoptr (GstAllocator) allocator =
+      gst_object_ref_sink (g_object_new (trap_allocator_get_type (), NULL));
+  Trap *trap = g_new0 (Trap, 1);
+  GstClothDisparity *disparity;
+  GstSegment segment;
+  GstBuffer *buffer, *out;
+  gsize size;
+  Bench b;
+
+  bench_init (&b, 2, "");
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.time = 10 * GST_SECOND;
+  gst_harness_push_event (b.in[0], gst_event_new_segment (&segment));
+  buffer = picture (&b, 0, 1, 0);
+  trap->bench = &b;
+  trap->data = g_malloc (gst_buffer_get_size (buffer));
+  size = gst_buffer_extract (buffer, 0, trap->data, G_MAXSIZE);
+  gst_memory_init (&trap->memory, 0, allocator, NULL, size, 0, 0, size);
+  gst_buffer_replace_all_memory (buffer, &trap->memory);
+  gst_harness_push (b.in[1], picture (&b, 1, 1, 0));
+  gst_harness_push (b.in[0], buffer);
+  out = gst_harness_pull (b.src);
+  fail_unless (out != NULL);
+  disparity = gst_buffer_get_cloth_disparity (out);
+  fail_unless (disparity != NULL);
+  fail_unless (gst_element_get_static_pad (b.element, "sink_0") == NULL);
+  /* 25 a second, from 10 s on */
+  fail_unless_equals_uint64 (gst_cloth_disparity_get_sequence (disparity), 251);
+  gst_buffer_unref (out);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* Without the head's pictures there is nothing to go on. */
 GST_START_TEST (test_head_ends)
 {
@@ -891,6 +981,7 @@ clothdisparity_suite (void)
   tcase_add_test (tc, test_plain);
   tcase_add_test (tc, test_early_end);
   tcase_add_test (tc, test_head_ends);
+  tcase_add_test (tc, test_head_released);
   tcase_add_test (tc, test_offset);
   tcase_add_test (tc, test_flush);
   tcase_add_test (tc, test_renegotiate);
