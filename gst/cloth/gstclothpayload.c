@@ -2,6 +2,8 @@
  * that holds it, copies it by reference and scales it with the picture.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
+#include <math.h>
+
 #include <gst/video/video.h>
 #include <gst/video/gstvideometa.h>
 
@@ -87,10 +89,23 @@ meta_free (GstMeta * meta, GstBuffer * buffer)
       gst_cloth_payload_release);
 }
 
-/* TRUE when a meta's transformation is a change of the picture's size */
+/* Whether a picture is displayed in one shape before and after, but for sizes in whole pixels */
+static gboolean
+keeps_shape (const GstVideoInfo * in, const GstVideoInfo * out)
+{
+  const gdouble shape = (gdouble) in->width * in->par_n * out->par_d /
+      ((gdouble) in->height * in->par_d * out->par_n);
+
+  return fabs (out->height * shape - out->width) < 1
+      || fabs (out->width / shape - out->height) < 1;
+}
+
+/* TRUE when a meta's transformation is a change of the picture's size, and that of the whole
+ * picture. What scales to another shape adds borders, or distorts, and doesn't say which. */
 static gboolean
 get_scale (GQuark type, gpointer data, gdouble * scale_x, gdouble * scale_y)
 {
+  static gint told = FALSE;
   const GstVideoMetaTransform *scale = data;
 
   if (!GST_VIDEO_META_TRANSFORM_IS_SCALE (type))
@@ -98,6 +113,18 @@ get_scale (GQuark type, gpointer data, gdouble * scale_x, gdouble * scale_y)
   if (GST_VIDEO_INFO_WIDTH (scale->in_info) <= 0
       || GST_VIDEO_INFO_HEIGHT (scale->in_info) <= 0)
     return FALSE;
+  if (!keeps_shape (scale->in_info, scale->out_info)) {
+    if (g_atomic_int_compare_and_exchange (&told, FALSE, TRUE))
+      GST_WARNING
+          ("Pictures of %dx%d are scaled to %dx%d, another shape, maybe "
+          "with borders: what was seen in them is dropped. Leave "
+          "pixel-aspect-ratio out of the caps, or detect behind the scaling.",
+          GST_VIDEO_INFO_WIDTH (scale->in_info),
+          GST_VIDEO_INFO_HEIGHT (scale->in_info),
+          GST_VIDEO_INFO_WIDTH (scale->out_info),
+          GST_VIDEO_INFO_HEIGHT (scale->out_info));
+    return FALSE;
+  }
   *scale_x = (gdouble) GST_VIDEO_INFO_WIDTH (scale->out_info)
       / GST_VIDEO_INFO_WIDTH (scale->in_info);
   *scale_y = (gdouble) GST_VIDEO_INFO_HEIGHT (scale->out_info)

@@ -214,6 +214,7 @@ test_meta (void)
 
   gst_video_info_set_format (&in, GST_VIDEO_FORMAT_GRAY8, 3, 2);
   gst_video_info_set_format (&out, GST_VIDEO_FORMAT_GRAY8, 30, 10);
+  out.par_d = 2;
   meta = gst_buffer_get_meta (buffer, gst_cloth_disparity_meta_api_get_type ());
   g_assert_true (meta->info->transform_func (scaled, meta, buffer,
           gst_video_meta_transform_scale_get_quark (), &transform));

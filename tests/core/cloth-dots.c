@@ -124,6 +124,7 @@ test_transforms (void)
 
   gst_video_info_set_format (&in, GST_VIDEO_FORMAT_I420, 640, 480);
   gst_video_info_set_format (&out, GST_VIDEO_FORMAT_I420, 320, 960);
+  out.par_n = 4;
   g_assert_false (meta->transform_func (other, from, buffer,
           g_quark_from_static_string ("a-transform-that-nobody-knows"), NULL));
   g_assert_null (gst_buffer_get_cloth_dots (other));

@@ -306,6 +306,53 @@ test_transforms (void)
   gst_buffer_unref (other);
 }
 
+/* Where the shape changes there are borders, or none: nobody knows where places are then. */
+static void
+test_shapes (void)
+{
+  static const struct
+  {
+    gint par_n, par_d, width, height, to_n, to_d;
+    gboolean kept;
+  } cases[] = {
+    {1, 1, 320, 240, 1, 1, TRUE},
+    {1, 1, 320, 320, 1, 1, FALSE},
+    {1, 1, 320, 320, 4, 3, TRUE},
+    {1, 1, 1280, 720, 1, 1, FALSE},
+    /* 213.3 × 160, rounded */
+    {1, 1, 213, 160, 1, 1, TRUE},
+    {1, 1, 214, 160, 1, 1, TRUE},
+    {1, 1, 212, 160, 1, 1, FALSE},
+    {1, 1, 215, 160, 1, 1, FALSE},
+    {1, 1, 1, 1, 1, 1, TRUE},
+    {12, 11, 320, 240, 1, 1, FALSE},
+    {12, 11, 320, 240, 12, 11, TRUE},
+    {12, 11, 640, 440, 1, 1, TRUE},
+    {12, 11, 440, 640, 1, 1, FALSE},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (GstBuffer) buffer = gst_buffer_new ();
+    g_autoptr (GstBuffer) scaled = gst_buffer_new ();
+    GstVideoInfo in, out;
+    GstVideoMetaTransform scale = { &in, &out };
+
+    gst_buffer_add_cloth_saddles_meta (buffer, some_saddles ());
+    gst_video_info_set_format (&in, GST_VIDEO_FORMAT_GRAY8, 640, 480);
+    in.par_n = cases[i].par_n;
+    in.par_d = cases[i].par_d;
+    gst_video_info_set_format (&out, GST_VIDEO_FORMAT_GRAY8,
+        (guint) cases[i].width, (guint) cases[i].height);
+    out.par_n = cases[i].to_n;
+    out.par_d = cases[i].to_d;
+    g_assert_cmpint (transform (buffer, scaled,
+            gst_video_meta_transform_scale_get_quark (), &scale), ==,
+        cases[i].kept);
+    g_assert_true ((gst_buffer_get_cloth_saddles (scaled) != NULL) ==
+        cases[i].kept);
+  }
+}
+
 static void
 test_tags (void)
 {
@@ -368,6 +415,7 @@ main (int argc, char **argv)
   g_test_add_func ("/cloth/saddles/scale", test_scale_saddles);
   g_test_add_func ("/cloth/quads/scale", test_scale_quads);
   g_test_add_func ("/cloth/saddles/transforms", test_transforms);
+  g_test_add_func ("/cloth/saddles/shapes", test_shapes);
   g_test_add_func ("/cloth/saddles/tags", test_tags);
   g_test_add_func ("/cloth/saddles/misuse", test_misuse);
   return g_test_run ();

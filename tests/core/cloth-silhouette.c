@@ -117,6 +117,7 @@ test_meta (void)
 
   gst_video_info_set_format (&in, GST_VIDEO_FORMAT_GRAY8, 300, 5);
   gst_video_info_set_format (&out, GST_VIDEO_FORMAT_GRAY8, 150, 10);
+  out.par_n = 4;
   meta = gst_buffer_get_meta (buffer,
       gst_cloth_silhouette_meta_api_get_type ());
   g_assert_true (meta->info->transform_func (scaled, meta, buffer,
