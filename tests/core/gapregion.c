@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "gst/gap/localise/localisation.h"
+#include "gst/gap/localise/null-distribution.h"
 #include "gst/math/random.h"
 
 #define COLUMNS 12
@@ -277,6 +278,103 @@ test_odd (void)
   forget (r);
 }
 
+/* A baseline that ends sooner than the take tells nothing of what comes after: here its memory goes on
+ * with what would be a gap. */
+static void
+test_shorter_null (void)
+{
+  const guint end = FRAMES - 5;
+  ClothRecording *r = record (FRAMES, SIGMA), *null_recording =
+      record (end, SIGMA);
+  g_autofree gfloat *off = make_noise (FRAMES, SIGMA, 0., 1);
+  g_autofree gfloat *null = make_noise (FRAMES, SIGMA, 0., 2);
+  g_autofree gfloat *cut = NULL;
+  const ClothNudgedResidual take = { r, off };
+  ClothNudgedResidual nudged = { null_recording, null };
+  ClothLocalisationOptions options;
+  g_autoptr (ClothExcess) full = NULL, less = NULL;
+
+  cloth_localisation_options_init (&options);
+  add_step (off, FRAMES, 50, 6., 0.3);
+  for (gsize i = 3 * (gsize) N * end; i < 3 * N * FRAMES; i++)
+    null[i] = 0.5f;
+  full = cloth_excess_new (&take, &nudged, 1, TRUE, FALSE, &options);
+  /* the simulation is let in for 0.15 s */
+  for (gsize i = 10 * N; i < (gsize) N * FRAMES; i++) {
+    g_assert_cmpuint (full->known[i], ==, i < (gsize) N * end);
+    g_assert_true (full->known[i] || full->values[i] == 0.f);
+  }
+  /* of another motion, it need not last */
+  less = cloth_excess_new (&take, &nudged, 1, FALSE, FALSE, &options);
+  for (gsize i = 10 * N; i < (gsize) N * FRAMES; i++)
+    g_assert_true (less->known[i]);
+  cut = g_memdup2 (null, 3 * (gsize) N * end * sizeof *null);
+  nudged.off = cut;
+  for (guint k = 0; k < 2; k++) {
+    g_autoptr (ClothLocalisation) region = cloth_localisation_new (&take,
+        &nudged, 1, !k, &options);
+
+    assert_patch (region);
+  }
+  forget (null_recording);
+  forget (r);
+}
+
+/* What a vertex is expected to be off by: from the null's own frame as long as there are any, then from its
+ * mean at that time of a window. */
+static void
+test_shorter_floor (void)
+{
+  const guint end = FRAMES - 5;
+  ClothRecording *r = record (FRAMES, 1e-9);
+  g_autofree gdouble *squares = g_new (gdouble, N * FRAMES);
+  g_autofree guint *windows = cloth_rollout_list_windows (r,
+      CLOTH_DIAGNOSIS_WINDOW_S);
+  g_autofree guint *tiles = g_new0 (guint, N);
+  const guint length = 15;      /* frames of a window */
+  ClothWindowedGap null = { N, end, windows[end - 1] + 1, windows, tiles,
+    squares
+  };
+  const ClothGapOptions options = { 0 };
+  ClothDiagnosis d = { 0 };
+  gdouble sum = 0.;
+  guint n = 0;
+
+  /* the null grows from window to window; behind its end lies something else */
+  for (guint f = 0; f < FRAMES; f++)
+    for (guint v = 0; v < N; v++)
+      squares[f * N + v] = f < end ? 1e-6 * (1 + windows[f]) : 1e6;
+  d.recordings = g_ptr_array_new ();
+  g_ptr_array_add (d.recordings, r);
+  d.options = &options;
+  d.result = cloth_gap_result_new ();
+  d.result->series.n = windows[FRAMES - 1] + 1;
+  d.nulls[0] = &null;
+  d.n_nulls = 1;
+  d.null_recordings[0] = 1;
+  d.null_alike = TRUE;
+  cloth_diagnosis_fill_null_distribution (&d);
+  for (guint f = 1; f < FRAMES; f++) {
+    gdouble expected = 1e-6 * (1 + windows[f]);
+
+    if (f >= end) {
+      sum = n = 0;
+      for (guint i = 1; i < end; i++)
+        if ((i - 1) % length == (f - 1) % length) {
+          sum += 1e-6 * (1 + windows[i]);
+          n++;
+        }
+      expected = sum / n;
+    }
+    for (guint v = 0; v < N; v++)
+      g_assert_cmpfloat_with_epsilon (d.result->playback.sigma[f * N + v],
+          sqrt (expected), 1e-6 * sqrt (expected));
+  }
+  cloth_gap_result_free (d.result);
+  g_ptr_array_unref (d.recordings);
+  forget (r);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -287,5 +385,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gapregion/everywhere", test_everywhere);
   g_test_add_func ("/gapregion/unseen", test_unseen);
   g_test_add_func ("/gapregion/odd", test_odd);
+  g_test_add_func ("/gapregion/shorter-null", test_shorter_null);
+  g_test_add_func ("/gapregion/shorter-floor", test_shorter_floor);
   return g_test_run ();
 }

@@ -108,13 +108,15 @@ find_normals (const ClothTopology * t, const gdouble * y, gdouble * normals)
   }
 }
 
-/* @less, if any, is taken off. */
+/* @less, if any, is taken off; where it ends nothing is known any more. */
 static void
 split_init (Split * split, const ClothNudgedResidual * nudged,
     const ClothNudgedResidual * less)
 {
   const ClothRecording *r = nudged->recording;
   gsize all = (gsize) r->n_frames * r->n;
+  const gsize both = less ? MIN (all, (gsize) less->recording->n_frames *
+      r->n) : 0;
   g_autofree gdouble *normals = g_new (gdouble, 3 * (gsize) r->n);
 
   split->recording = r;
@@ -123,7 +125,7 @@ split_init (Split * split, const ClothNudgedResidual * nudged,
     g_autofree guint8 *other = find_known (less->recording);
 
     for (gsize i = 0; i < all; i++)
-      split->known[i] &= other[i];
+      split->known[i] &= i < both && other[i];
   }
   for (guint p = 0; p < 2; p++)
     split->parts[p] = g_new0 (gfloat, 3 * all);
@@ -135,7 +137,8 @@ split_init (Split * split, const ClothNudgedResidual * nudged,
       gdouble off[3], along = 0., square = 0.;
 
       for (guint k = 0; k < 3; k++) {
-        off[k] = nudged->off[3 * at + k] - (less ? less->off[3 * at + k] : 0.f);
+        off[k] = nudged->off[3 * at + k] - (at < both ? less->off[3 * at +
+                k] : 0.f);
         along += off[k] * normal[k];
         square += normal[k] * normal[k];
       }

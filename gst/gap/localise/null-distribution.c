@@ -36,13 +36,16 @@ list_phases (const ClothWindowedGap * e)
   return phases;
 }
 
-/* Of the same motion: the null's own distance at about that time of that window. */
+/* Of the same motion: the null's own distance at about that time of that window; NaN once it has
+ * ended. */
 static gdouble
 square_there (const ClothWindowedGap * null, guint frame, guint v)
 {
   guint end = MIN (frame + HALF_FRAMES, null->n_frames - 1), n = 0;
   gdouble sum = 0.;
 
+  if (frame >= null->n_frames)
+    return NAN;
   for (guint i = MAX (frame, HALF_FRAMES) - HALF_FRAMES; i <= end; i++) {
     gdouble square = null->squares[(gsize) i * null->n + v];
 
@@ -204,11 +207,13 @@ cloth_diagnosis_fill_null_distribution (ClothDiagnosis * d)
   g_autofree guint *windows = NULL, *phases = NULL;
   ClothWindowedGap *null;
   gboolean same_motion;
+  guint i;
 
   if (!d->n_nulls)
     return;
-  null = d->nulls[MIN (d->floor_null, d->n_nulls - 1)];
-  same_motion = d->null_alike || d->null_recordings[d->floor_null] == 0;
+  i = MIN (d->floor_null, d->n_nulls - 1);
+  null = d->nulls[i];
+  same_motion = d->null_alike || d->null_recordings[i] == 0;
   windows = cloth_rollout_list_windows (r, CLOTH_DIAGNOSIS_WINDOW_S);
   phases = list_phases (&(ClothWindowedGap) {
       .n_frames = r->n_frames,.window = windows}
