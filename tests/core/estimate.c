@@ -380,6 +380,14 @@ arc_tangent (gdouble x, gdouble * slope)
   return atan (x);
 }
 
+/* Falls to 0 at 0, and rises twice as fast beyond; its slope is that of a flatter one. */
+static gdouble
+hat (gdouble x, gdouble * slope)
+{
+  *slope = 0.1;
+  return x > 0. ? x : -2. * x;
+}
+
 /* A linear problem is solved by one step, which stays; the prior draws back to the start. */
 static void
 test_linear (void)
@@ -414,6 +422,20 @@ test_cut (void)
 
   g_assert_true (run (&c, 1e-9, 100., 20, NULL, &error));
   g_assert_cmpfloat (fabs (c.x), <, 0.1);
+}
+
+/* Steps of 2.5 lead from 3 to 0.5 and to −2, which is worse: as nothing is tried any more, it ends where it
+ * was best. */
+static void
+test_last (void)
+{
+  g_autoptr (GError) error = NULL;
+  Curve c = { hat, INFINITY, 3. };
+
+  g_assert_true (run (&c, 1e-9, 2.5, 3, NULL, &error));
+  g_assert_no_error (error);
+  g_assert_cmpuint (c.n_linearised, ==, 3);
+  g_assert_cmpfloat_with_epsilon (c.x, 0.5, 1e-12);
 }
 
 /* What can't be simulated is stepped back from; where it is all there is, it is told. */
@@ -453,6 +475,7 @@ main (int argc, char **argv)
   g_test_add_func ("/estimate/change", test_change);
   g_test_add_func ("/estimate/gauss-newton/linear", test_linear);
   g_test_add_func ("/estimate/gauss-newton/cut", test_cut);
+  g_test_add_func ("/estimate/gauss-newton/last", test_last);
   g_test_add_func ("/estimate/gauss-newton/unsound", test_unsound);
   return g_test_run ();
 }

@@ -76,9 +76,10 @@ cloth_gauss_newton_run (const ClothGaussNewtonProblem * problem,
           moved, NULL);
 
       if (!(cost < before)) {
-        if (failed && pass + 1 == options->n_passes) {
+        /* nobody would look at a shorter step */
+        if (pass + 1 == options->n_passes) {
           problem->restore (data);
-          return TRUE;
+          break;
         }
         /* back, most of the way */
         problem->move (data, step, CLOTH_GAUSS_NEWTON_CUT - 1., moved);
