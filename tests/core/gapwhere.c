@@ -269,6 +269,112 @@ test_directions (void)
   }
 }
 
+/* Gaps of a sheet that lies still and of one that feels half the pull; not all of it was seen. */
+static ClothWindowedGap **
+measure (const ClothRecording * r, gboolean is_free)
+{
+  const ClothRolloutOptions options = {.threads = 1 };
+  const gdouble half = 0.5;
+  g_autoptr (ClothModel) model = cloth_model_new ();
+  g_autoptr (ClothModel) lighter = cloth_model_new ();
+  g_autoptr (GError) error = NULL;
+  const ClothModel *models[2] = { model, lighter };
+  ClothWindowedGap **gaps;
+
+  cloth_model_set_effect (lighter, cloth_effect_find ("gravity_scale"), &half);
+  gaps = is_free ? cloth_windowed_gaps_new_free (r, models, 2, 1600., 0.3, 0.3,
+      &options, &error) : cloth_windowed_gaps_new (r, models, 2, 1600., 0.3,
+      &options, &error);
+  g_assert_no_error (error);
+  return gaps;
+}
+
+/* What does not count in one gap counts in none, so that means and their draws are of the same places: one
+ * model's are 2 mm everywhere, the other's 1 mm where there are any. */
+static void
+test_aligned (void)
+{
+  const gdouble gravity[3] = { 0., 0., 2. };
+  g_autoptr (ClothTake) take = NULL;
+  g_autoptr (ClothRecording) r = record (gravity, FRAMES, &take);
+  g_autoptr (ClothGapResult) result = cloth_gap_result_new ();
+  ClothWindowedGap **gaps = measure (r, FALSE);
+  gdouble draws[2 * 50];
+  guint n = 0;
+
+  for (gsize i = N; i < N * FRAMES; i++) {
+    gaps[0]->squares[i] = i % 7 == 0 ? NAN : i % 5 == 0 ? 1. : 4e-6;
+    gaps[1]->squares[i] = i % 5 == 0 ? NAN : 1e-6;
+  }
+  cloth_windowed_gaps_align (gaps, 2);
+  for (gsize i = N; i < N * FRAMES; i++) {
+    const gboolean counts = i % 5 && i % 7;
+
+    g_assert_cmpint (isfinite (gaps[0]->squares[i]), ==, counts);
+    g_assert_cmpint (isfinite (gaps[1]->squares[i]), ==, counts);
+    n += counts;
+  }
+  g_assert_cmpuint (n, >, N * FRAMES / 2);
+  cloth_windowed_gaps_interval (gaps, 2, NULL, 1, 50, draws);
+  for (guint m = 0; m < 2; m++) {
+    const gdouble square = m ? 1e-6 : 4e-6;
+
+    g_assert_cmpfloat_with_epsilon (cloth_windowed_gap_square (gaps[m], NULL),
+        square, 1e-12);
+    for (guint d = 0; d < 50; d++)
+      g_assert_cmpfloat_with_epsilon (draws[2 * d + m], square, 1e-12);
+  }
+  cloth_windowed_gap_fill (gaps[0], gaps[1], r, take, result);
+  for (guint v = 0; v < N; v++)
+    g_assert_cmpfloat_with_epsilon (result->gained[v], 0.75 *
+        result->vertices[v], 1e-9);
+  cloth_windowed_gaps_free (gaps, 2);
+}
+
+/* Frames that lead up to a free run, the first one and what was not seen count neither before nor after
+ * a gap becomes that of another simulator or of two models; nor does what is not seen any more then. */
+static void
+test_replaced (void)
+{
+  const gdouble gravity[3] = { 0., 0., 2. };
+  const guint led = 15;         /* 0.3 s */
+  g_autoptr (ClothTake) take = NULL;
+  g_autoptr (ClothRecording) r = record (gravity, FRAMES, &take);
+  ClothWindowedGap **gaps;
+  ClothRecording twin = *r;
+  g_autofree gdouble *y = NULL;
+  g_autofree gfloat *x = NULL;
+
+  for (gsize i = 0; i < N * FRAMES; i += 11)
+    r->seen[i] = 0.;
+  twin.y = y = g_memdup2 (r->y, 3 * N * FRAMES * sizeof *y);
+  for (gsize i = 0; i < 3 * N * FRAMES; i++)
+    y[i] += 1e-3;
+  gaps = measure (r, TRUE);
+  x = g_memdup2 (gaps[1]->positions, 3 * N * FRAMES * sizeof *x);
+  for (gsize i = 0; i < N * FRAMES; i += 13)
+    r->seen[i] = 0.;
+  cloth_windowed_gap_replace (gaps[1], r, gaps[0], &twin);
+  for (gsize i = 0; i < N * FRAMES; i++) {
+    const gboolean counts = i >= led * N && i % 11 && i % 13;
+    gdouble square = 0.;
+
+    g_assert_cmpint (isfinite (gaps[1]->squares[i]), ==, counts);
+    for (guint k = 0; k < 3; k++)
+      square += pow (1e-3 + x[3 * i + k] - gaps[0]->positions[3 * i + k], 2.);
+    if (counts)
+      g_assert_cmpfloat_with_epsilon (gaps[1]->squares[i], square, 1e-6 *
+          square);
+  }
+  cloth_windowed_gaps_free (gaps, 2);
+  gaps = measure (r, FALSE);
+  cloth_windowed_gap_subtract (gaps[1], gaps[0], r);
+  for (gsize i = 0; i < N * FRAMES; i++)
+    g_assert_cmpint (isfinite (gaps[1]->squares[i]), ==, i >= N && i % 11
+        && i % 13);
+  cloth_windowed_gaps_free (gaps, 2);
+}
+
 int
 main (int argc, char **argv)
 {
@@ -277,5 +383,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gapwhere/tone-and-noise", test_tone_and_noise);
   g_test_add_func ("/gapwhere/short", test_short);
   g_test_add_func ("/gapwhere/directions", test_directions);
+  g_test_add_func ("/gapwhere/aligned", test_aligned);
+  g_test_add_func ("/gapwhere/replaced", test_replaced);
   return g_test_run ();
 }

@@ -65,25 +65,24 @@ keep_nudged (const ClothRecording * r, guint frame, const gdouble * positions,
       nudged[3 * begin + i] = (gfloat) (positions[i] - r->y[3 * begin + i]);
 }
 
-/* Also where the simulation is. */
+/* Also where the simulation is. @again: in place of others; what did not count doesn't now. */
 static void
 add_distances (ClothWindowedGap * e, const ClothRecording * r, guint frame,
-    const gdouble * positions)
+    const gdouble * positions, gboolean again)
 {
   for (guint v = 0; v < r->n; v++) {
     gsize at = (gsize) frame * r->n + v;
-    gdouble axes[3][3], d[3], square;
+    const gboolean counts = r->seen[at] > 0. && !(again
+        && isnan (e->squares[at]));
+    gdouble axes[3][3], d[3];
 
     for (guint k = 0; k < 3; k++) {
       e->positions[3 * at + k] = (gfloat) positions[3 * v + k];
       d[k] = positions[3 * v + k] - r->y[3 * at + k];
     }
     cloth_recording_cut_blind (r, at, d);
-    square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    if (r->seen[at] == 0.)
-      continue;
-    e->squares[at] = square;
-    if (find_axes (r, frame, v, axes))
+    e->squares[at] = counts ? d[0] * d[0] + d[1] * d[1] + d[2] * d[2] : NAN;
+    if (counts && find_axes (r, frame, v, axes))
       for (guint a = 0; a < 3; a++) {
         gdouble along = d[0] * axes[a][0] + d[1] * axes[a][1] +
             d[2] * axes[a][2];
@@ -105,7 +104,7 @@ add_frame (gpointer data, guint model, guint frame, const gdouble * positions)
     keep_nudged (r, frame, positions, e->nudged);
     return;
   }
-  add_distances (e, r, frame, positions);
+  add_distances (e, r, frame, positions, FALSE);
 }
 
 /* Tiles of the flat cloth, of its extents along u and v. */
@@ -261,7 +260,7 @@ cloth_windowed_gaps_free (ClothWindowedGap ** gaps, guint n)
  * @recording: the recording
  *
  * Makes them the distances of the two models, with the recording's noise: what the gap
- * would be if the other were reality.
+ * would be if the other were reality. What did not count doesn't now.
  */
 void
 cloth_windowed_gap_subtract (ClothWindowedGap * gap,
@@ -278,8 +277,9 @@ cloth_windowed_gap_subtract (ClothWindowedGap * gap,
       gap->nudged[3 * i + k] -= other->nudged[3 * i + k];
     }
     cloth_recording_cut_blind (recording, i, off);
-    gap->squares[i] = noise + off[0] * off[0] + off[1] * off[1] +
-        off[2] * off[2];
+    if (!isnan (gap->squares[i]))
+      gap->squares[i] = noise + off[0] * off[0] + off[1] * off[1] +
+          off[2] * off[2];
   }
 }
 
@@ -289,7 +289,8 @@ cloth_windowed_gap_subtract (ClothWindowedGap * gap,
  * @twin: what another simulator made of the recorded scene
  *
  * Makes them the distances of the other simulator with what @gap has more than @own:
- * x = twin + (x_gap − x_own), vertex by vertex, so that what our simulator can't do cancels.
+ * x = twin + (x_gap − x_own), vertex by vertex, so that what our simulator can't do cancels. What
+ * did not count doesn't now.
  */
 void
 cloth_windowed_gap_replace (ClothWindowedGap * gap,
@@ -307,13 +308,32 @@ cloth_windowed_gap_replace (ClothWindowedGap * gap,
     for (gsize i = 0; i < row; i++)
       positions[i] = twin->y[begin + i] + gap->positions[begin + i] -
           own->positions[begin + i];
-    add_distances (gap, recording, frame, positions);
+    add_distances (gap, recording, frame, positions, TRUE);
     for (gsize i = begin; gap->nudged && i < begin + row; i++)
       gap->nudged[i] -= own->nudged[i];
   }
   gap->sound = sound;
   if (gap->energy)
     cloth_energy_spectrum_subtract (gap->energy, own->energy, gap->nudged);
+}
+
+/* @gaps: (inout) (array length=n): distances of one recording
+ * @n: how many
+ *
+ * What does not count in one of them counts in none: models that say what was wrong with the recording are
+ * held against what is known without that, which is less.
+ */
+void
+cloth_windowed_gaps_align (ClothWindowedGap ** gaps, guint n)
+{
+  for (gsize i = 0; i < (gsize) gaps[0]->n * gaps[0]->n_frames; i++) {
+    gdouble sum = 0.;
+
+    for (guint m = 0; m < n; m++)
+      sum += gaps[m]->squares[i];
+    for (guint m = 0; m < n && isnan (sum); m++)
+      gaps[m]->squares[i] = NAN;
+  }
 }
 
 /* @gap: distances
@@ -343,7 +363,7 @@ cloth_windowed_gap_square (const ClothWindowedGap * gap,
   return count ? sum / count : NAN;
 }
 
-/* @gaps: (array length=n): distances of the same recording
+/* @gaps: (array length=n): distances of the same recording, of which the same count
  * @n: how many
  * @windows: (nullable): which windows count
  * @seed: of the draws

@@ -51,6 +51,7 @@ void cloth_windowed_gap_subtract (ClothWindowedGap * gap,
 void cloth_windowed_gap_replace (ClothWindowedGap * gap,
     const ClothRecording * recording, const ClothWindowedGap * own,
     const ClothRecording * twin);
+void cloth_windowed_gaps_align (ClothWindowedGap ** gaps, guint n);
 gdouble cloth_windowed_gap_square (const ClothWindowedGap * gap,
     const gboolean * windows);
 void cloth_windowed_gaps_interval (ClothWindowedGap ** gaps, guint n,

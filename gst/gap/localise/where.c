@@ -68,7 +68,7 @@ fill_series (const ClothWindowedGap * before, const ClothWindowedGap * after,
 }
 
 /* @before: distances without the accepted effects
- * @after: (nullable): with them
+ * @after: (nullable): with them, where the same places count
  * @recording: what they are of
  * @take: its take
  * @result: (inout): gets the shares of vertices, frames and directions, what @after

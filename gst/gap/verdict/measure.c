@@ -452,6 +452,7 @@ measure_kind (Work * w, Kind kind, guint i, GError ** error)
     cloth_windowed_gaps_free (own, 1);
     return FALSE;
   }
+  cloth_windowed_gaps_align (gaps, w->n);
   if (kind == WINDOWS)
     windows = list_judging (d, i, gaps[0]);
   find_squares (d, kind, i, gaps, w->n, windows, w->all[i].models[kind]);
