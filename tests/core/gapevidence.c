@@ -278,6 +278,76 @@ test_clamps (void)
       -INFINITY);
 }
 
+/* A recording of clamps that move evenly, as fast as @speed along x, and let go after @until_s: then nobody
+ * knows where they are. */
+static ClothRecording *
+record_clamps (guint n_held, gdouble fps, gdouble begin_s, gdouble at,
+    gdouble speed, gdouble until_s)
+{
+  const guint n_frames = (guint) (2. * fps) + 1;
+  ClothRecording *r = g_new0 (ClothRecording, 1);
+
+  r->n_frames = n_frames;
+  r->times = g_new (gdouble, n_frames);
+  r->scene = g_new0 (ClothScene, 1);
+  r->scene->held = g_array_new (FALSE, FALSE, sizeof (ClothHeld));
+  r->scene->clamps = g_new (gdouble, 3 * n_frames * n_held + 1);
+  for (guint i = 0; i < n_held; i++) {
+    const ClothHeld held = { i, -INFINITY, begin_s + until_s };
+
+    g_array_append_val (r->scene->held, held);
+  }
+  for (guint f = 0; f < n_frames; f++) {
+    r->times[f] = begin_s + f / fps;
+    for (guint i = 0; i < n_held; i++) {
+      gdouble *place = r->scene->clamps + 3 * (f * n_held + i);
+
+      place[0] = f / fps < until_s ? at + i + speed * f / fps : NAN;
+      place[1] = place[2] = at;
+    }
+  }
+  return r;
+}
+
+static void
+forget_clamps (ClothRecording * r)
+{
+  g_array_unref (r->scene->held);
+  g_free (r->scene->clamps);
+  g_free (r->scene);
+  g_free (r->times);
+  g_free (r);
+}
+
+/* Clamps that move alike are alike wherever, whenever and how often they were recorded, and however soon they
+ * let go; others are apart by what they move more, t apart in speed. */
+static void
+test_clamps_distance (void)
+{
+  ClothRecording *take = record_clamps (2, 50., 0., 0., 0.3, INFINITY);
+  ClothRecording *alike = record_clamps (2, 30., 1e6, 5., 0.3, 1.01);
+  ClothRecording *faster = record_clamps (2, 50., 3., 0., 0.5, 1.01);
+  ClothRecording *loose = record_clamps (0, 50., 0., 0., 0., 0.);
+  gdouble expected = 0.;
+
+  for (guint f = 0; f <= 50; f++)
+    expected += pow (0.2 * f / 50., 2.) / 51.;
+  g_assert_cmpfloat_with_epsilon (cloth_gap_find_clamps_distance (take, alike),
+      0., 1e-15);
+  g_assert_cmpfloat_with_epsilon (cloth_gap_find_clamps_distance (take,
+          faster), expected, 1e-12);
+  g_assert_cmpfloat_with_epsilon (cloth_gap_find_clamps_distance (faster,
+          take), expected, 1e-12);
+  /* what can't be compared is the last choice, but still one */
+  g_assert_cmpfloat (cloth_gap_find_clamps_distance (take, loose), ==,
+      G_MAXDOUBLE);
+  g_assert_cmpfloat (cloth_gap_find_clamps_distance (loose, loose), ==, 0.);
+  forget_clamps (take);
+  forget_clamps (alike);
+  forget_clamps (faster);
+  forget_clamps (loose);
+}
+
 /* Odds of two sets that differ in one effect, and of one whose rest was not compared. */
 static void
 test_without (void)
@@ -346,6 +416,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/evidence/not-finite", test_not_finite);
   g_test_add_func ("/gap/evidence/prediction", test_prediction);
   g_test_add_func ("/gap/evidence/clamps", test_clamps);
+  g_test_add_func ("/gap/evidence/clamps-distance", test_clamps_distance);
   g_test_add_func ("/gap/evidence/without", test_without);
   g_test_add_func ("/gap/evidence/likely", test_likely);
   return g_test_run ();

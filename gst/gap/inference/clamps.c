@@ -10,6 +10,10 @@
 #include "gst/gap/inference/clamps.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "gst/fit/recording/recording.h"
+#include "gst/math/vec3.h"
 
 /* @square: mean square of the distances, by coordinate, m²
  * @usual: that of the reference, or of the noise if that is more, m²
@@ -44,6 +48,64 @@ cloth_gap_is_surely_held (const ClothRecording * recording,
 
   return r->times[frame] >= held->from_s + margin
       && r->times[frame] <= held->until_s - margin;
+}
+
+/* Where clamp @i is so long after the recording's beginning, if it holds then and that is known. */
+static gboolean
+find_place (const ClothRecording * r, guint i, gdouble after_s,
+    gdouble place[3])
+{
+  const ClothScene *scene = r->scene;
+  const gdouble time = r->times[0] + after_s;
+  const gint frame = cloth_recording_find_frame (r, time);
+  const gdouble *path;
+  gdouble share;
+
+  if (frame < 0 || !cloth_held_holds (&g_array_index (scene->held, ClothHeld,
+              i), time))
+    return FALSE;
+  path = scene->clamps + 3 * ((gsize) cloth_recording_find_between (r, time,
+          (guint) frame, &share) * scene->held->len + i);
+  for (guint k = 0; k < 3; k++)
+    place[k] = share > 0. ? path[k] + share * (path[3 * scene->held->len + k] -
+        path[k]) : path[k];
+  return isfinite (place[0] + place[1] + place[2]);
+}
+
+/* @a: a recording
+ * @b: another
+ *
+ * Returns: mean square of what their clamps move differently, from where they are at first, over the times at
+ *   which both hold, m²; %G_MAXDOUBLE when no two ever do, but 0 when neither has any
+ */
+gdouble
+cloth_gap_find_clamps_distance (const ClothRecording * a,
+    const ClothRecording * b)
+{
+  const guint n = MIN (a->scene->held->len, b->scene->held->len);
+  gdouble sum = 0., count = 0.;
+
+  for (guint i = 0; i < n; i++) {
+    gdouble first[3] = { 0. };
+    gboolean began = FALSE;
+
+    for (guint f = 0; f < a->n_frames; f++) {
+      const gdouble after_s = a->times[f] - a->times[0];
+      gdouble x[3], y[3];
+
+      if (!find_place (a, i, after_s, x) || !find_place (b, i, after_s, y))
+        continue;
+      cloth_vec3_subtract (x, y, x);
+      if (!began)
+        memcpy (first, x, sizeof first);
+      began = TRUE;
+      cloth_vec3_subtract (x, first, x);
+      sum += cloth_vec3_dot (x, x);
+      count += 1.;
+    }
+  }
+  return count > 0. ? sum / count :
+      a->scene->held->len + b->scene->held->len ? G_MAXDOUBLE : 0.;
 }
 
 /* @recording: a recording

@@ -13,6 +13,8 @@ gboolean cloth_gap_is_surely_held (const ClothRecording * recording,
     const ClothHeld * held, gsize frame);
 gdouble cloth_gap_find_clamps_off (const ClothRecording * recording,
     gdouble * n);
+gdouble cloth_gap_find_clamps_distance (const ClothRecording * a,
+    const ClothRecording * b);
 gchar *cloth_diagnosis_find_clamps_off (const ClothDiagnosis * d,
     gdouble * log_bayes_factor);
 

@@ -11,27 +11,11 @@
 #include <string.h>
 
 #include "gst/fit/error.h"
+#include "gst/gap/inference/clamps.h"
 
 /* Directions of wind along the ground, and parts of all takes in which it may differ. */
 #define WAYS 2
 #define N_PARTS 8
-
-/* Mean square distance of two recordings' clamps from frame to frame, m². */
-static gdouble
-find_distance (const ClothRecording * a, const ClothRecording * b)
-{
-  const guint n = MIN (a->scene->held->len, b->scene->held->len);
-  const guint n_frames = MIN (a->n_frames, b->n_frames);
-  gdouble sum = 0.;
-
-  for (guint f = 0; f < n_frames; f++)
-    for (guint i = 0; i < n; i++)
-      for (guint k = 0; k < 3; k++)
-        sum += pow (a->scene->clamps[3 * ((gsize) f * a->scene->held->len +
-                    i) + k] - b->scene->clamps[3 * ((gsize) f *
-                    b->scene->held->len + i) + k], 2.);
-  return n ? sum / ((gdouble) n * n_frames) : 0.;
-}
 
 static guint
 find_reference (const ClothDiagnosis * d, guint take)
@@ -43,8 +27,8 @@ find_reference (const ClothDiagnosis * d, guint take)
   if (cloth_diagnosis_twin (d, take))
     return end + take;
   for (guint i = d->n_takes; i < end; i++) {
-    const gdouble distance = find_distance (cloth_diagnosis_recording (d,
-            take), cloth_diagnosis_recording (d, i));
+    const gdouble distance = cloth_gap_find_clamps_distance
+        (cloth_diagnosis_recording (d, take), cloth_diagnosis_recording (d, i));
 
     if (distance < nearest) {
       nearest = distance;
