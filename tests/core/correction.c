@@ -5,6 +5,7 @@
 #include "gst/fit/error.h"
 #include "gst/fit/estimate/estimate.h"
 #include "gst/math/random.h"
+#include "gst/math/vec3.h"
 
 #include "simscene.h"
 
@@ -160,6 +161,61 @@ test_places (void)
         i / 3 % N == N - COLUMNS + 1 ? i / 3 / N % 2 : 1.);
   }
   assert_within (back->sigma, NOISE / factor, 1e-15);
+}
+
+/* An error of a place that was mapped is as unlikely as that of the place before, x and A x being the same
+ * number of deviations off; along a ray of which nothing is known nothing is known either, wherever it points
+ * now. */
+static void
+test_mapped_noise (void)
+{
+  const gdouble factor = 1.25, axes[3] = { 2., -3., 1. };
+  const gdouble way[6] = { 3., -5., 8., 0.1, -0.2, 0.05 };
+  /* of three sizes along no axis in particular; the second knows nothing along (1, 2, 2)/3 */
+  const gdouble known[6] = { 4e6, 9e6, 1e6, 1e6, -5e5, 2e6 };
+  const gdouble ray[6] = { 1e6 * 8. / 9., 1e6 * 5. / 9., 1e6 * 5. / 9.,
+    -1e6 * 4. / 9., -1e6 * 2. / 9., -1e6 * 2. / 9.
+  };
+  const gdouble off[3] = { 3e-4, -7e-4, 5e-4 };
+  g_autoptr (ClothRecording) r = waves_new (), back = NULL;
+  ClothMeasurement m = fault ("position_scale", &factor);
+  gdouble square, blind[3];
+
+  cloth_measurement_add_effect (&m, cloth_effect_find ("misalignment"), way);
+  cloth_measurement_add_effect (&m, cloth_effect_find ("axes_exchange"), axes);
+  r->noise = cloth_recording_noise_new (N * FRAMES);
+  for (gsize i = 0; i < N * FRAMES; i++)
+    g_assert_true (cloth_recording_noise_set (r->noise, i, i % 2 ? ray : known,
+            0.));
+  r->sigma = cloth_recording_noise_finish (r->noise, r->seen);
+  square = r->noise->square;
+  back = cloth_recording_correct (r, &m);
+  /* what others hold stays as it is */
+  g_assert_cmpfloat (r->noise->square, ==, square);
+  for (gsize i = 0; i < N * FRAMES; i++) {
+    gdouble mapped[3] = { 0. }, a[3], b[3];
+
+    for (guint k = 0; k < 3; k++)
+      for (guint c = 0; c < 3; c++)
+        mapped[k] += m.matrix[3 * k + c] * off[c];
+    cloth_recording_whiten (r, i, mapped, a);
+    cloth_recording_whiten (back, i, off, b);
+    assert_within (cloth_vec3_length (b), cloth_vec3_length (a), 1e-9);
+    /* what is cut off is what the map takes to the ray */
+    memcpy (a, mapped, sizeof a);
+    memcpy (b, off, sizeof b);
+    cloth_recording_cut_blind (r, i, a);
+    cloth_recording_cut_blind (back, i, b);
+    memset (blind, 0, sizeof blind);
+    for (guint k = 0; k < 3; k++)
+      for (guint c = 0; c < 3; c++)
+        blind[k] += m.matrix[3 * k + c] * b[c];
+    for (guint k = 0; k < 3; k++)
+      assert_within (blind[k], a[k], 1e-12);
+  }
+  assert_within (back->noise->square, square / (factor * factor), 1e-15);
+  assert_within (cloth_recording_noise_finish (back->noise, back->seen),
+      back->sigma, 1e-12);
 }
 
 /* What labels that were shifted don't show is not seen, but lies with the rest. */
@@ -921,6 +977,7 @@ main (int argc, char **argv)
   g_test_add_func ("/correction/hidden", test_hidden);
   g_test_add_func ("/correction/places", test_places);
   g_test_add_func ("/correction/shifted", test_shifted);
+  g_test_add_func ("/correction/mapped-noise", test_mapped_noise);
   g_test_add_func ("/correction/smooth", test_smooth);
   g_test_add_func ("/correction/measured", test_measured);
   g_test_add_func ("/correction/null", test_null);

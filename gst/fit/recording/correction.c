@@ -14,12 +14,12 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/recording/correction.h"
 
-
 #include <math.h>
 #include <string.h>
 
 #include "gst/fit/error.h"
 #include "gst/fit/recording/interpolation.h"
+#include "gst/fit/recording/noise.h"
 #include "gst/fit/recording/signal.h"
 
 #define N_NODES 7
@@ -268,6 +268,16 @@ relabel (ClothRecording * r, const ClothMeasurement * m)
   }
 }
 
+/* Whether places are not only shifted. */
+static gboolean
+has_map (const ClothMeasurement * m)
+{
+  for (guint k = 0; k < 9; k++)
+    if (m->matrix[k] != (k % 4 == 0))
+      return TRUE;
+  return FALSE;
+}
+
 static void
 map_back (ClothRecording * r, const ClothMeasurement * m)
 {
@@ -279,6 +289,13 @@ map_back (ClothRecording * r, const ClothMeasurement * m)
     volume += inverse[k] * (inverse[3 + (k + 1) % 3] * inverse[6 + (k + 2) % 3]
         - inverse[3 + (k + 2) % 3] * inverse[6 + (k + 1) % 3]);
   r->sigma *= cbrt (fabs (volume));
+  if (r->noise && has_map (m)) {
+    ClothRecordingNoise *noise = cloth_recording_noise_map (r->noise,
+        m->matrix);
+
+    cloth_recording_noise_unref (r->noise);
+    r->noise = noise;
+  }
   for (gsize i = 0; i < all; i++) {
     gdouble off[3], speed[3];
 

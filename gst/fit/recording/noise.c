@@ -113,6 +113,35 @@ cloth_recording_noise_add (const ClothRecordingNoise * noise, gsize at,
   }
 }
 
+/* @noise: noise of places A x
+ * @matrix: A, a turn, mirror image or scale, row by row
+ *
+ * Returns: (transfer full): that of x: AᵀΛA
+ */
+ClothRecordingNoise *
+cloth_recording_noise_map (const ClothRecordingNoise * noise,
+    const gdouble matrix[9])
+{
+  ClothRecordingNoise *mapped = cloth_recording_noise_new (noise->n);
+
+  mapped->square = noise->square / pow (fabs (cloth_mat3_det (matrix)),
+      2. / 3.);
+  for (gsize at = 0; at < noise->n; at++) {
+    gdouble information[6] = { 0. }, full[9], half[9];
+
+    cloth_recording_noise_add (noise, at, information);
+    unpack (information, full);
+    cloth_mat3_mul (full, matrix, half);
+    cloth_mat3_mul_tn (matrix, half, full);
+    for (guint k = 0; k < 3; k++) {
+      information[k] = full[4 * k];
+      information[3 + k] = full[3 * ((k + 1) % 3) + (k + 2) % 3];
+    }
+    cloth_recording_noise_set (mapped, at, information, 0.);
+  }
+  return mapped;
+}
+
 /* Eigenvalues of the root of an information, and its vectors. */
 static void
 take_apart (const ClothRecordingNoise * noise, gsize at, gdouble roots[3],

@@ -11,6 +11,8 @@ gboolean cloth_recording_noise_set (ClothRecordingNoise * noise, gsize at,
     const gdouble information[6], gdouble least);
 void cloth_recording_noise_add (const ClothRecordingNoise * noise, gsize at,
     gdouble information[6]);
+ClothRecordingNoise *cloth_recording_noise_map (const ClothRecordingNoise * noise,
+    const gdouble matrix[9]);
 gdouble cloth_recording_noise_solve (const ClothRecordingNoise * noise,
     gsize at, const gdouble pull[3], gdouble way[3]);
 gdouble cloth_recording_noise_finish (ClothRecordingNoise * noise,
