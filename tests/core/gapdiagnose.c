@@ -490,6 +490,40 @@ test_diverging (void)
           0).effect->id, ==, "air_drag");
 }
 
+/* The second of three blocks, which judges, and what its windows show of the one before. */
+static void
+film_without_judge (gdouble t, gfloat p[3])
+{
+  if (t > 0.29 && t < 0.93)
+    p[0] = p[1] = p[2] = NAN;
+}
+
+/* Where nothing was seen in what judges there is no gap of 0, but none that is known. */
+static void
+test_unseen_judge (void)
+{
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothModel) model = model_new (CLOTH_FORCE_MEMBRANE);
+  g_autoptr (ClothModel) other = model_new (CLOTH_FORCE_MASS_SPRING);
+  const gchar *const effects[] = { "air_drag", NULL };
+  const ClothGapOptions options = {.effects = effects };
+  g_autoptr (ClothGapResult) result = NULL;
+  g_autoptr (ClothTake) take = NULL;
+  TestGapSheet filmed = sheet;
+
+  filmed.film = film_without_judge;
+  take = test_gap_record (&filmed, other, sway_at, parent, "unseen", 1);
+  result = cloth_gap_diagnose (&take, 1, model, &options, &error);
+  g_assert_no_error (error);
+  g_test_message ("%s", result->reason);
+  g_assert_cmpint (result->verdict, ==, CLOTH_GAP_UNDECIDABLE);
+  g_assert_nonnull (strstr (result->reason, "Nothing was seen in the parts "
+          "that judge"));
+  g_assert_true (isnan (result->gap_before.value));
+  g_assert_true (isnan (result->noise_floor.value));
+  g_assert_true (isnan (result->rest_p_value));
+}
+
 static gboolean
 stop (gpointer data, gdouble share, const gchar * what)
 {
@@ -536,6 +570,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/unknown-effect", test_unknown_effect);
   g_test_add_func ("/gap/narrow", test_narrow);
   g_test_add_func ("/gap/diverging", test_diverging);
+  g_test_add_func ("/gap/unseen-judge", test_unseen_judge);
   g_test_add_func ("/gap/cancelled", test_cancelled);
   status = g_test_run ();
   test_gap_remove (parent);

@@ -345,7 +345,7 @@ is_baseline (const ClothDiagnosis * d, guint recording)
       && recording < d->n_takes + d->options->n_baselines;
 }
 
-/* What the two force models differ by, and the noise. */
+/* What the two force models differ by, and the noise; of one that diverges nobody knows. */
 static gboolean
 measure_other_model (const Work * w, Kind kind, guint i,
     const ClothWindowedGap * gap, Square * floor, GError ** error)
@@ -360,7 +360,7 @@ measure_other_model (const Work * w, Kind kind, guint i,
 
   if (!gaps)
     return FALSE;
-  for (gsize k = 0; k < 3 * all && gaps[0]->sound; k++) {
+  for (gsize k = 0; k < 3 * all; k++) {
     gdouble off = gaps[0]->positions[k] - gap->positions[k];
 
     if (isnan (gap->squares[k / 3]))
@@ -368,7 +368,8 @@ measure_other_model (const Work * w, Kind kind, guint i,
     sum += off * off;
     seen += k % 3 == 0;
   }
-  floor->square = cloth_recording_noise_square (r) + sum / MAX (seen, 1);
+  if (gaps[0]->sound)
+    floor->square = cloth_recording_noise_square (r) + sum / MAX (seen, 1);
   if (gaps[0]->sound && kind == WINDOWS && i == first_judge (d)) {
     cloth_windowed_gap_subtract (gaps[0], gap, r);
     keep_null (d, g_steal_pointer (&gaps[0]), i);
@@ -486,6 +487,17 @@ add_judge (Square * sum, const Square * one, gdouble share)
     sum->draws[i] += share * draw_of (one, i);
 }
 
+/* Where nothing judges there is no mean. */
+static void
+forget_judges (Work * w)
+{
+  for (guint kind = 0; kind < N_KINDS; kind++) {
+    for (guint k = 0; k < w->n; k++)
+      w->judges->models[kind][k].square = NAN;
+    w->judges->floor[kind].square = w->judges->after[kind].square = NAN;
+  }
+}
+
 static void
 sum_judges (Work * w)
 {
@@ -494,6 +506,8 @@ sum_judges (Work * w)
 
   for (guint i = 0; i < d->recordings->len; i++)
     seen += is_judge (d, i) ? w->all[i].seen : 0.;
+  if (!(seen > 0.))
+    forget_judges (w);
   for (guint i = 0; i < d->recordings->len; i++) {
     const Measured *one = &w->all[i];
 
@@ -560,12 +574,14 @@ find_shrink (const Square * before, const Square * after, const Square * floor)
 }
 
 /* How often a rest is no more than the floor, each drawn anew. The observed ones count as one draw
- * more (Davison and Hinkley 1997, 4.2). */
+ * more (Davison and Hinkley 1997, 4.2). NaN when either is not known. */
 static gdouble
 find_rest_p_value (const Square * rest, const Square * floor)
 {
   guint count = 0;
 
+  if (isnan (rest->square) || isnan (floor->square))
+    return NAN;
   for (guint i = 0; i < N_DRAWS; i++)
     for (guint j = 0; j < N_DRAWS; j++)
       count += draw_of (rest, i) <= draw_of (floor, j);
