@@ -123,14 +123,6 @@ load_one (ClothDiagnosis * d, ClothTake * take, const ClothModel * model,
   return TRUE;
 }
 
-/* What one of them has no position of counts in none. */
-static void
-see_alike (ClothRecording * a, ClothRecording * b)
-{
-  for (gsize i = 0; i < (gsize) a->n_frames * a->n; i++)
-    a->seen[i] = b->seen[i] = a->seen[i] * b->seen[i];
-}
-
 /* What was simulated of one recording. */
 static gboolean
 load_twin (ClothDiagnosis * d, ClothTake * take, ClothRecording * recorded,
@@ -149,7 +141,7 @@ load_twin (ClothDiagnosis * d, ClothTake * take, ClothRecording * recorded,
   if (!twin || !cloth_recording_check_other (twin, recorded, error)
       || !(sha256 = cloth_take_sha256 (take, error)))
     return FALSE;
-  see_alike (recorded, twin);
+  cloth_recording_see_alike (recorded, twin);
   if (twin->between > 0.) {
     g_autofree gchar *note =
         g_strdup_printf ("Between its frames %s is known to "
@@ -284,7 +276,7 @@ load_twins (ClothDiagnosis * d, GError ** error)
     if (!load_twin (d, o->after[i], cloth_diagnosis_recording (d, judges + i),
             CLOTH_GAP_SIMULATED_AFTER, d->afters, error))
       return FALSE;
-    see_alike (cloth_diagnosis_recording (d, judges + i),
+    cloth_recording_see_alike (cloth_diagnosis_recording (d, judges + i),
         cloth_diagnosis_twin (d, judges + i));
   }
   if (o->simulator && !simulate_twins (d, error))

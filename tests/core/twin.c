@@ -432,6 +432,28 @@ test_refused (gconstpointer data)
       g_error ("“%s” does not say “%s”", error->message, c->says[i]);
 }
 
+/* A place that outlines alone tell of is told of no less because several simulations are held against it. */
+static void
+test_alike (void)
+{
+  gdouble recorded[6] = { 1., 1., 0., 0., 0.5, 0.5 };
+  gdouble before[6] = { 1., 0., 1., 0., 0.5, 1. };
+  gdouble after[6] = { 1., 1., 1., 1., 0.5, 0.25 };
+  static const gdouble expected[6] = { 1., 0., 0., 0., 0.5, 0.25 };
+  ClothRecording r = {.n = 3,.n_frames = 2,.seen = recorded };
+  ClothRecording twin = {.n = 3,.n_frames = 2,.seen = before };
+  ClothRecording other = {.n = 3,.n_frames = 2,.seen = after };
+
+  cloth_recording_see_alike (&r, &twin);
+  cloth_recording_see_alike (&r, &other);
+  cloth_recording_see_alike (&r, &twin);
+  for (guint i = 0; i < 6; i++) {
+    g_assert_cmpfloat (recorded[i], ==, expected[i]);
+    g_assert_cmpfloat (before[i], ==, expected[i]);
+    g_assert_cmpfloat (after[i], ==, expected[i]);
+  }
+}
+
 int
 main (int argc, char **argv)
 {
@@ -442,6 +464,7 @@ main (int argc, char **argv)
   g_test_add_func ("/twin/exact", test_exact);
   g_test_add_func ("/twin/bent", test_bent);
   g_test_add_func ("/twin/masked", test_masked);
+  g_test_add_func ("/twin/alike", test_alike);
   g_test_add_func ("/twin/accepted", test_accepted);
   g_test_add_func ("/twin/seldom", test_seldom);
   for (guint i = 0; i < G_N_ELEMENTS (refused); i++) {

@@ -663,3 +663,16 @@ cloth_recording_new_twin (ClothTake * simulated,
       3 * (gsize) twin->n * sizeof *twin->y);
   return twin;
 }
+
+/* @a: (inout): a recording
+ * @b: (inout): what was simulated of it, or another such simulation
+ *
+ * What one of them has no position of counts in none; where outlines alone tell of a place it counts as much as
+ * in the one that knows less.
+ */
+void
+cloth_recording_see_alike (ClothRecording * a, ClothRecording * b)
+{
+  for (gsize i = 0; i < (gsize) a->n_frames * a->n; i++)
+    a->seen[i] = b->seen[i] = MIN (a->seen[i], b->seen[i]);
+}

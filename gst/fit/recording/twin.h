@@ -10,5 +10,6 @@ G_BEGIN_DECLS
 
 ClothRecording *cloth_recording_new_twin (ClothTake * simulated,
     const ClothRecording * recorded, GError ** error);
+void cloth_recording_see_alike (ClothRecording * a, ClothRecording * b);
 
 G_END_DECLS
