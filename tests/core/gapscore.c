@@ -152,6 +152,56 @@ test_five (void)
   }
 }
 
+/* The best of several candidates pays for the choice: if there is nothing, one of n has a p-value below p with
+ * a probability of 1 − (1 − p)ⁿ. */
+static void
+test_choice (void)
+{
+  const gboolean blocks[1] = { TRUE };
+  const guint nuisance = 0;
+  gboolean sound[COLUMNS];
+
+  for (guint k = 0; k < COLUMNS; k++)
+    sound[k] = TRUE;
+  for (guint64 seed = 1; seed <= 5; seed++) {
+    Data data;
+    g_autoptr (ClothNormalEquations) normal = NULL;
+    g_autoptr (ClothCandidates) candidates = list_candidates (1);
+    g_autoptr (GArray) scores = NULL;
+    const ClothGapScore *score;
+    gdouble least = 1.;
+
+    fill (&data, 0.05, seed);
+    normal = normal_of (&data);
+    {
+      const ClothGapTest test = {.normal = normal,.candidates = candidates,
+        .blocks = blocks,.nuisances = &nuisance,.precisions = &precision,
+        .n_nuisances = 1,.n_numbers = 1,.overdispersion = overdispersion,
+        .sound = sound
+      };
+
+      for (guint k = 1; k < COLUMNS; k++) {
+        ClothReducedEquations reduced;
+        gdouble phi, square;
+
+        g_assert_true (cloth_gap_test_reduce (&test, normal, blocks, &k, 1,
+                &reduced));
+        phi = cloth_gap_test_dispersion (&test, normal, &reduced);
+        square = pow (reduced.s[0] / phi, 2.) / (reduced.g[0] / phi +
+            1. / (prior * prior));
+        /* beyond a normal number of that square, to either side */
+        least = MIN (least, erfc (sqrt (0.5 * square)));
+      }
+      scores = cloth_gap_test_run (&test);
+    }
+    g_assert_cmpuint (scores->len, ==, 1);
+    score = &g_array_index (scores, ClothGapScore, 0);
+    g_test_message ("p %g, of the best %g", least, score->p_value);
+    g_assert_cmpfloat_with_epsilon (score->p_value, 1. - pow (1. - least,
+            COLUMNS - 1), 1e-9);
+  }
+}
+
 /* The nuisances of a likeness have the same prior as those of a score. */
 static void
 test_cosine (void)
@@ -187,6 +237,7 @@ main (int argc, char **argv)
 {
   g_test_init (&argc, &argv, NULL);
   g_test_add_func ("/gap/score/five", test_five);
+  g_test_add_func ("/gap/score/choice", test_choice);
   g_test_add_func ("/gap/score/cosine", test_cosine);
   return g_test_run ();
 }

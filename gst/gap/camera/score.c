@@ -8,7 +8,7 @@
  * Formulas, with g, s, r and φ of test.c:
  *   A = g/φ + R⁻¹,  η̂ = −A⁻¹ s/φ,  covariance A⁻¹
  *   log Bayes factor = ½ sᵀA⁻¹s/φ² − ½ log det (A R)
- *   LM = sᵀA⁻¹s/φ², of which the p-value is the tail of χ²
+ *   LM = sᵀA⁻¹s/φ², of which the p-value is the tail of χ², that of the best of n 1 − (1 − p)ⁿ
  *   improvement = share of zᵀz that is removed from each block by estimates from the others
  *   constancy: Σ over blocks of ρᵀ g⁻¹ ρ/φ with ρ = s + g η̂ of the block is χ² about the common η̂
  * A one-sided effect has η̂ ≥ 0.
@@ -232,13 +232,10 @@ run_trial (const Trial * trial, ClothGapScore * score)
   if (!estimate (trial, &reduced, phi, changes, inverse, &log_det))
     return FALSE;
   for (guint i = 0; i < n; i++) {
-    /* an estimate counts by its precision, the inverse of its variance */
-    const gdouble precision = 1. / inverse[i * n + i];
-
     fit -= 0.5 * reduced.s[i] / phi * changes[i];
     score->kept = MIN (score->kept, plain.kept[i]);
-    score->changes[i] = changes[i] / inverse[i * n + i] / precision;
-    score->sigmas[i] = sqrt (1. / precision);
+    score->changes[i] = changes[i];
+    score->sigmas[i] = sqrt (inverse[i * n + i]);
   }
   score->log_bayes_factor = fit - 0.5 * log_det;
   gained = cross_validate (trial, normal, normal, null, phi, &total);
@@ -299,6 +296,8 @@ cloth_gap_test_run (const ClothGapTest * test)
       continue;
     most.log_bayes_factor = most.kept < CLOTH_GAP_IDENTIFIABLE ? -INFINITY :
         most.log_bayes_factor - log (n);
+    /* that none of so many would be as large: 1 − (1 − p)ⁿ */
+    most.p_value = -expm1 (n * log1p (-most.p_value));
     g_array_append_val (best, most);
   }
   g_array_sort (best, cloth_gap_score_compare);

@@ -13,7 +13,7 @@ G_BEGIN_DECLS
  *   it was not estimated on
  * @changes: expected changes of its directions
  * @sigmas: their standard deviations
- * @p_value: of no effect
+ * @p_value: that none of its effect's candidates has any
  * @constancy_p_value: of the same effect in every block
  * @kept: share of its derivative that no number of the model can make up for
  */
