@@ -10,6 +10,8 @@
 #include "gst/math/vec3.h"
 
 #define MAX_SEAMS 1024
+/* Share of its extent by which the uv of a grid may be off. */
+#define GRID_ROUNDING 1e-6
 
 static const ClothJsonFile take_json =
     { "take.json", cloth_file_error_quark, CLOTH_FILE_ERROR_INVALID };
@@ -365,19 +367,27 @@ cloth_take_info_parse (const gchar * json, gsize size, GError ** error)
   return g_steal_pointer (&info);
 }
 
-/* A grid is told by its sizes, if take.json may have them and they give the very same uv and
- * faces. */
+/* A grid is told by its sizes, if take.json may have them and they give the same faces, and
+ * the same uv but for what adding up cells or dividing the width rounds. */
 static gboolean
 is_grid (const ClothTopology * topology)
 {
   g_autoptr (ClothTopology) grid = NULL;
-  const gfloat *last = topology->uv + 2 * (gsize) (topology->n_vertices - 1);
+  const gsize n = topology->n_vertices;
+  const gfloat *last = topology->uv + 2 * (n - 1);
 
   if (topology->columns < 2 || topology->rows < 2 ||
+      (gsize) topology->columns * topology->rows != n ||
       MIN (last[0], last[1]) < 1e-6f || MAX (last[0], last[1]) > 1e6f)
     return FALSE;
   grid = cloth_topology_new_grid (topology->columns, topology->rows, last[0],
       last[1]);
+  for (gsize i = 0; i < 2 * n; i++) {
+    if (!(fabs ((gdouble) grid->uv[i] - topology->uv[i]) <=
+            GRID_ROUNDING * last[i % 2]))
+      return FALSE;
+    grid->uv[i] = topology->uv[i];
+  }
   return cloth_topology_equal (grid, topology);
 }
 

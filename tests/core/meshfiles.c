@@ -891,6 +891,61 @@ test_lone_files (void)
   scratch_end ();
 }
 
+/* The uv of a print's grid are so many cells each, rounded otherwise than the parts of its
+ * width. The take has a grid all the same, unless a vertex is off by more than rounding, and
+ * every format gives it back. */
+static void
+test_summed_grids (void)
+{
+  const gdouble edge_m[2] = { 0.63 / 32, 0.67 / 34 };
+
+  for (guint i = 0; i < 2; i++) {
+    const gfloat off = i ? 1e-5f : 0;
+    g_autoptr (ClothTopology) topology = cloth_topology_new_grid (33, 35, 1, 1);
+    g_autofree gfloat *positions = g_new0 (gfloat, (gsize) 3 * 33 * 35);
+    g_autofree guint8 *states = g_new (guint8, 33 * 35);
+    const ClothMeshFrame frame = { positions, states, NULL };
+    guint n_rounded = 0;
+
+    memset (states, 1, 33 * 35);
+    for (guint k = 0; k < 33 * 35; k++) {
+      topology->uv[2 * k] = (gfloat) ((k % 33) * edge_m[0]);
+      topology->uv[2 * k + 1] = (gfloat) ((k / 33) * edge_m[1]);
+      n_rounded += topology->uv[2 * k + 1] !=
+          (gfloat) ((gdouble) 0.67f * (k / 33) / 34);
+    }
+    g_assert_cmpuint (n_rounded, >, 0);
+    topology->uv[2 * 40] += off;
+    scratch_begin ();
+    for (guint k = 0; k < 3; k++) {
+      static const gchar *const names[] = { "g.take", "g.obj", "g.ply" };
+      g_autofree gchar *path = scratch_path (names[k]);
+      g_autoptr (ClothMeshWriter) writer = cloth_mesh_writer_new (path,
+          CLOTH_MESH_FORMAT_AUTO, NULL, topology, 25, 1, NULL);
+      g_autoptr (ClothMeshReader) reader = NULL;
+      g_autoptr (GError) error = NULL;
+      const ClothTopology *got;
+
+      g_assert_true (cloth_mesh_writer_append (writer, 0, &frame, &error));
+      g_assert_true (cloth_mesh_writer_close (writer, &error));
+      reader = cloth_mesh_reader_open (path, CLOTH_MESH_FORMAT_AUTO, &error);
+      g_assert_no_error (error);
+      got = cloth_mesh_reader_get_topology (reader);
+      g_assert_cmpuint (got->columns, ==, 33);
+      g_assert_cmpuint (got->rows, ==, 35);
+      for (guint v = 0; v < 2 * 33 * 35; v++)
+        g_assert_cmpfloat_with_epsilon (got->uv[v], topology->uv[v], 1e-6);
+    }
+    peer_run (i ?
+        "import json\nassert json.load(open('g.take/take.json'))['mesh']=='mesh.obj'\n"
+        : "import json\nj=json.load(open('g.take/take.json'))\n"
+        "assert j['grid']=={'columns':33,'rows':35,'width_m':.63,"
+        "'height_m':.67},j['grid']\n"
+        "assert not os.path.exists('g.take/mesh.obj')\n");
+    scratch_end ();
+  }
+}
+
 /* A take has a grid only when its sizes give the very mesh. */
 static void
 test_grids_of_takes (void)
@@ -1090,6 +1145,7 @@ main (int argc, char **argv)
       test_caches_that_do_not_fit);
   g_test_add_func ("/meshfiles/broken-frames", test_broken_frames);
   g_test_add_func ("/meshfiles/lone-files", test_lone_files);
+  g_test_add_func ("/meshfiles/summed-grids", test_summed_grids);
   g_test_add_func ("/meshfiles/grids-of-takes", test_grids_of_takes);
   g_test_add_func ("/meshfiles/abort-and-replace", test_abort_and_replace);
   g_test_add_func ("/meshfiles/refused-frames", test_refused_frames);
