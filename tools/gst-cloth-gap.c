@@ -86,10 +86,12 @@ static const ToolCommand commands[] = {
         "numbers are in DIR/gap.json.",
       "gst-cloth-gap-1.0 diagnose film.take --model model.json --effects "
         "wind,gravity_tilt \\\n    --output gap"},
-  {"compare", "RECORDED SIMULATED --output DIR",
-        "Says how far a simulation of your own is from a recording, without a "
-        "model.",
-      "gst-cloth-gap-1.0 compare film.take simulated.take --output gap"},
+  {"compare", "RECORDED SIMULATED --model MODEL --output DIR",
+        "Says how far a simulation of your own is from a recording, and which "
+        "effect it lacks.\nMODEL is fitted to it, and simulates the cloth with "
+        "effects and without.",
+      "gst-cloth-gap-1.0 compare film.take simulated.take --model model.json "
+        "\\\n    --output gap"},
   {"survey", "LIST --model MODEL --output DIR",
         "Diagnoses many takes, a line of LIST each, by several processes on one "
         "host or on many,\nand makes one table of the effects over them: "
@@ -120,7 +122,7 @@ main (int argc, char **argv)
   };
   const GOptionEntry entries[] = {
     {"model", 'm', 0, G_OPTION_ARG_FILENAME, &arguments.model,
-          "diagnose, survey: model.json that the takes are held against",
+          "diagnose, compare, survey: model.json that the takes are held against",
         "MODEL"},
     {"baseline", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.baselines,
         "diagnose: takes the model is accepted on", "TAKE…"},
@@ -139,8 +141,8 @@ main (int argc, char **argv)
           "diagnose: most runs of it for each take, to find its numbers (20)",
         "N"},
     {"effects", 0, 0, G_OPTION_ARG_STRING, &arguments.effects,
-          "diagnose, survey: effects to consider, with commas between them "
-          "(all)",
+          "diagnose, compare, survey: effects to consider, with commas between "
+          "them (all)",
         "LIST"},
     {"format", 0, 0, G_OPTION_ARG_STRING, &arguments.format,
         "effects: text, json or markdown (text)", "FORMAT"},

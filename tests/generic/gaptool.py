@@ -9,6 +9,7 @@ import hashlib
 import json
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -435,6 +436,18 @@ def usage(folder):
         done = run(folder, *arguments)
         expect(done.returncode == 2 and text in done.stderr and not os.path.exists(
             os.path.join(folder, 'x')), '%s: %s' % (' '.join(arguments), done.stderr.split('\n')[0]))
+
+
+    # what a command's help shows is accepted; its files are not there
+    for command in 'diagnose', 'compare', 'simulate', 'check-simulator', 'effects':
+        told = run(folder, command, '--help').stdout
+        example = shlex.split(told.partition('Example:')[2].replace('\\\n', ' '))
+        done = run(folder, *example[1:])
+        expect(example[1] == command and done.returncode == (command != 'effects'),
+               'the example of %s: %d %s' % (command, done.returncode, done.stderr.strip()))
+    told = run(folder, 'compare', '--help').stdout
+    for text in 'compare RECORDED SIMULATED --model MODEL --output DIR', '--model=', '--effects=':
+        expect(text in told, 'help of compare has ' + text)
 
 
 def failures(folder):
