@@ -18,8 +18,7 @@ run (gconstpointer data)
   if (!imports && (arguments->output || arguments->units || arguments->axes
           || arguments->width || arguments->height || arguments->mesh
           || arguments->clamp_file || arguments->clamps || arguments->columns
-          || arguments->rows || arguments->rate != 0
-          || arguments->zero_is_missing))
+          || arguments->rows || arguments->rate || arguments->zero_is_missing))
     return complain (BAD_USAGE, "%s takes no options of import", command);
   if (imports)
     return import_take (arguments);
@@ -63,8 +62,9 @@ main (int argc, char **argv)
     {"axes", 'a', 0, G_OPTION_ARG_STRING, &arguments.axes,
         "import: z-up, y-up, x-up, or which of the source's axes become x, y and "
           "z, such as x,-z,y (z-up)", "AXES"},
-    {"rate", 'r', 0, G_OPTION_ARG_DOUBLE, &arguments.rate,
-          "import: frames a second, where the file has no times or wrong ones",
+    {"rate", 'r', 0, G_OPTION_ARG_STRING, &arguments.rate,
+          "import: frames a second, such as 50 or 30000/1001, where the file has "
+          "no times or wrong ones",
         "FPS"},
     {"columns", 0, 0, G_OPTION_ARG_INT, &arguments.columns,
         "import: vertices in a row of the grid", "N"},
@@ -104,6 +104,7 @@ main (int argc, char **argv)
   g_free (arguments.height);
   g_free (arguments.mesh);
   g_free (arguments.clamp_file);
+  g_free (arguments.rate);
   g_strfreev (arguments.clamps);
   g_strfreev (arguments.rest);
   return code;

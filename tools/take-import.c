@@ -27,12 +27,31 @@ parse_unit (const gchar * text, gdouble * unit_m)
   return FALSE;
 }
 
+/* A number, or a fraction as GStreamer writes frame rates. */
+static gboolean
+parse_rate (const gchar * text, gdouble * fps)
+{
+  gchar *end;
+  gdouble value = g_ascii_strtod (text, &end);
+
+  if (end == text)
+    return FALSE;
+  if (*end == '/') {
+    text = end + 1;
+    value /= g_ascii_strtod (text, &end);
+    if (end == text)
+      return FALSE;
+  }
+  *fps = value;
+  return *end == 0 && value >= 1e-3 && value <= 1e6;
+}
+
 gint
 import_take (const Arguments * arguments)
 {
   ClothImport import = {
     .source = arguments->rest[1],.output = arguments->output,
-    .axes = arguments->axes,.fps = arguments->rate,.mesh = arguments->mesh,
+    .axes = arguments->axes,.mesh = arguments->mesh,
     .clamps = (const gchar * const *) arguments->clamps,
     .clamp_file = arguments->clamp_file,
     .zero_is_missing = arguments->zero_is_missing,
@@ -49,9 +68,9 @@ import_take (const Arguments * arguments)
   if (arguments->units && !parse_unit (arguments->units, &import.unit_m))
     return complain (BAD_USAGE, "--units %s: give m, cm, mm or in",
         arguments->units);
-  if (arguments->rate != 0 && !(arguments->rate >= 1e-3
-          && arguments->rate <= 1e6))
-    return complain (BAD_USAGE, "--rate %g: give frames a second",
+  if (arguments->rate && !parse_rate (arguments->rate, &import.fps))
+    return complain (BAD_USAGE,
+        "--rate %s: give frames a second, such as 50 or 30000/1001",
         arguments->rate);
   if (arguments->columns < 0 || arguments->rows < 0)
     return complain (BAD_USAGE, "--columns and --rows count vertices");

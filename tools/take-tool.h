@@ -10,9 +10,8 @@
 typedef struct
 {
   gboolean overwrite, zero_is_missing;
-  gchar *output, *units, *axes, *width, *height, *mesh, *clamp_file;
+  gchar *output, *units, *axes, *width, *height, *mesh, *clamp_file, *rate;
   gchar **clamps;
-  gdouble rate;
   gint columns, rows;
   gchar **rest;                 /* the command and what belongs to it */
 } Arguments;

@@ -140,6 +140,10 @@ def tables():
     good('without times', write('untimed.csv', '\n'.join(
         row.split(',', 1)[1] for row in wide_table().split('\n')[:-1])), '--rate', '50',
         says=['50 frames a second, as given'])
+    good('a rate as GStreamer writes it', 'untimed.csv', '--rate', '30000/1001',
+         at=numpy.arange(60) * 1001 / 30000, says=['29.97 frames a second, as given'])
+    for rate in '0', '-50', 'fifty', '50/', '/2', '50/0', '50/-1', '50/1/1', '50 fps', 'nan', '':
+        bad('a rate of “%s”' % rate, 'untimed.csv', '--rate=' + rate, says=['such as 50 or 30000/1001'])
     names = ',' + ',' + ','.join('body:%d,,' % (k + 101) for k in range(81))
     good('names above X, Y, Z', write('vicon.csv', 'Trajectories\n50\n' + names
          + '\nFrame,Sub Frame,' + ','.join(['X,Y,Z'] * 81) + '\n,,' + ','.join(['mm,mm,mm'] * 81)
