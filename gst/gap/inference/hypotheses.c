@@ -313,11 +313,11 @@ compare_by_residual (gconstpointer a, gconstpointer b)
 }
 
 /* The one of the list with the same effects, or NULL: none is there twice. */
-static const ClothGapHypothesis *
+static ClothGapHypothesis *
 find_same (const GArray * hypotheses, const ClothGapHypothesis * h)
 {
   for (guint i = 0; i < hypotheses->len; i++) {
-    const ClothGapHypothesis *other = &g_array_index (hypotheses,
+    ClothGapHypothesis *other = &g_array_index (hypotheses,
         ClothGapHypothesis, i);
 
     if (cloth_gap_hypothesis_is_same (other, h))
@@ -327,7 +327,7 @@ find_same (const GArray * hypotheses, const ClothGapHypothesis * h)
 }
 
 /* The one of the list that lacks one candidate of @h and is the same else, or NULL. */
-static const ClothGapHypothesis *
+static ClothGapHypothesis *
 find_part (const GArray * hypotheses, const ClothGapHypothesis * h, guint c)
 {
   ClothGapHypothesis part = { 0 };
@@ -954,6 +954,43 @@ bound_by_parts (const ClothDiagnosis * d, const ClothGapHypothesis * base,
     }
 }
 
+/* What explains the same as an effect of the base makes that effect superfluous: a set without it is as likely as the
+ * set with it, but for what the effect adds there. That is as much less than what it was found to add to the base as
+ * the posteriors of both sets, of this linearisation, say. */
+static void
+raise_parts (const ClothDiagnosis * d, const ClothGapHypothesis * base,
+    GArray * hypotheses)
+{
+  const ClothGapHypothesis *now = find_same (hypotheses, base);
+
+  if (!now || !now->is_compared || !now->z)
+    return;
+  for (guint i = 0; i < hypotheses->len; i++) {
+    const ClothGapHypothesis *h = &g_array_index (hypotheses,
+        ClothGapHypothesis, i);
+
+    if (h == now || !h->is_compared || !h->z || h->n_winds)
+      continue;
+    for (guint b = 0; b < now->n; b++) {
+      const ClothGapHypothesis *rest = find_part (hypotheses, now, b);
+      ClothGapHypothesis *part;
+      gdouble behind;
+      guint c = 0;
+
+      while (h->candidates[c] != now->candidates[b])
+        c++;
+      part = find_part (hypotheses, h, c);
+      if (!part || !rest)
+        continue;
+      behind = h->by_residual + rest->by_residual - now->by_residual +
+          find_nested_evidence (d, h, c) - find_nested_evidence (d, now, b);
+      /* not where one is infinite: then it is NaN */
+      if (behind < part->by_residual)
+        part->by_residual = behind;
+    }
+  }
+}
+
 /* How much less likely than the likeliest each is; those that could not be simulated are out. Of
  * those that are not compared in this round it is what it was before, held against the base. */
 static void
@@ -982,6 +1019,7 @@ rank (const ClothDiagnosis * d, const ClothGapLinearisation * l,
       h->by_residual += after - before;
   }
   bound_by_parts (d, l->base, hypotheses);
+  raise_parts (d, l->base, hypotheses);
   for (guint i = 0; i < hypotheses->len; i++)
     best = MIN (best, g_array_index (hypotheses, ClothGapHypothesis,
             i).by_residual);
