@@ -345,15 +345,19 @@ gst_cloth_camera_submit_input_buffer (GstBaseTransform * trans,
     gboolean is_discont, GstBuffer * input)
 {
   GstClothCamera *self = GST_CLOTH_CAMERA (trans);
-  g_autoptr (GstBuffer) buffer = input;
+  g_autoptr (GstBuffer) buffer = NULL;
   g_autoptr (GstClothMesh) mesh = NULL;
   g_autoptr (GError) error = NULL;
   const gfloat *positions;
   Frame *frame;
+  /* negotiates, and with qos drops what is late before it is drawn */
+  const GstFlowReturn flow =
+      GST_BASE_TRANSFORM_CLASS (gst_cloth_camera_parent_class)
+      ->submit_input_buffer (trans, is_discont, input);
 
-  if (!gst_base_transform_reconfigure (trans))
-    return GST_PAD_IS_FLUSHING (trans->srcpad) ? GST_FLOW_FLUSHING :
-        GST_FLOW_NOT_NEGOTIATED;
+  buffer = g_steal_pointer (&trans->queued_buf);
+  if (flow != GST_FLOW_OK)
+    return flow;
   if (!self->renderer)
     return GST_FLOW_NOT_NEGOTIATED;
   mesh = gst_cloth_parse_mesh (buffer, self->n_vertices, &error);
@@ -834,9 +838,15 @@ static GstCaps *
 gst_cloth_camera_fixate_caps (GstBaseTransform * trans,
     GstPadDirection direction, GstCaps * caps, GstCaps * other)
 {
+  g_autoptr (GstCaps) src_caps =
+      gst_static_pad_template_get_caps (&src_template);
   GstStructure *structure;
 
   if (direction == GST_PAD_SINK) {
+    /* without a peer the base class gives what came */
+    if (!gst_caps_can_intersect (other, src_caps))
+      gst_caps_take (&other, gst_cloth_camera_transform_caps (trans, direction,
+              caps, NULL));
     other = gst_caps_make_writable (gst_caps_truncate (other));
     structure = gst_caps_get_structure (other, 0);
     gst_structure_fixate_field_nearest_int (structure, "width", DEFAULT_WIDTH);

@@ -373,6 +373,73 @@ GST_START_TEST (test_events)
 
 GST_END_TEST;
 
+/* With qos what comes too late is not drawn, and counted; without it each mesh is. */
+GST_START_TEST (test_qos)
+{
+  for (guint on = 0; on < 2; on++) {
+    g_autofree gchar *settings =
+        g_strdup_printf ("camera=a pattern=" PATTERN "%s", on ? " qos=true" :
+        "");
+    GstHarness *h = harness (settings, "GRAY8");
+    g_autoptr (GstBus) bus = gst_bus_new ();
+    g_autoptr (GstElement) element = gst_harness_find_element (h,
+        "clothcamera");
+    const guint drawn[] = { 0, 6, 7 };
+    guint n = 0;
+
+    gst_element_set_bus (element, bus);
+    gst_harness_push (h, mesh_buffer (0, 4, 3, 0));
+    gst_harness_push_upstream_event (h,
+        gst_event_new_qos (GST_QOS_TYPE_UNDERFLOW, 2, 100 * GST_MSECOND, 0));
+    for (guint k = 1; k < 8; k++) {
+      /* those between are about as late as it can be told */
+      if (k < 3 || k > 5)
+        fail_unless_equals_int (gst_harness_push (h, mesh_buffer (k, 4, 3, 0)),
+            GST_FLOW_OK);
+    }
+    fail_unless_equals_int (gst_harness_buffers_received (h), on ? 3 : 5);
+    for (; on && n < 3; n++) {
+      g_autoptr (GstBuffer) out = gst_harness_pull (h);
+
+      fail_unless_equals_uint64 (GST_BUFFER_PTS (out),
+          drawn[n] * 40 * GST_MSECOND);
+    }
+    for (n = 0; TRUE; n++) {
+      g_autoptr (GstMessage) told = gst_bus_pop_filtered (bus, GST_MESSAGE_QOS);
+
+      if (!told)
+        break;
+    }
+    fail_unless_equals_int (n, on ? 2 : 0);
+    gst_element_set_bus (element, NULL);
+    gst_harness_teardown (h);
+  }
+}
+
+GST_END_TEST;
+
+/* Nobody takes the pictures: that is what upstream hears. */
+GST_START_TEST (test_not_linked)
+{
+  const gchar *const cases[] = { "a", NULL };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    GstElement *element = gst_element_factory_make ("clothcamera", NULL);
+    GstHarness *h;
+
+    if (cases[i])
+      g_object_set (element, "rig", rig, "camera", cases[i], NULL);
+    h = gst_harness_new_with_element (element, "sink", NULL);
+    gst_harness_set_src_caps (h, mesh_caps (4, 3));
+    fail_unless_equals_int (gst_harness_push (h, mesh_buffer (0, 4, 3, 0)),
+        GST_FLOW_NOT_LINKED);
+    gst_harness_teardown (h);
+    gst_object_unref (element);
+  }
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_latency)
 {
   GstHarness *late = harness ("camera=late", "GRAY8");
@@ -738,6 +805,8 @@ clothcamera_suite (void)
   tcase_add_test (tc, test_window);
   tcase_add_test (tc, test_dropped);
   tcase_add_test (tc, test_events);
+  tcase_add_test (tc, test_qos);
+  tcase_add_test (tc, test_not_linked);
   tcase_add_test (tc, test_latency);
   tcase_add_test (tc, test_latency_message);
   tcase_add_test (tc, test_order);
