@@ -239,6 +239,58 @@ test_shifted (void)
   }
 }
 
+/* Places that nobody saw stay where a simulation has them, whatever is made of the recording: only those that it
+ * has none of are filled in, here between two frames. */
+static void
+test_simulated (void)
+{
+  const gdouble labels[4] = { 0., 0., 1., 0. };
+  const ClothMeasurement m = fault ("label_exchange", labels);
+  const gboolean sound = TRUE;
+  g_autoptr (ClothRecording) r = waves_new (), back = NULL;
+  g_autofree gdouble *y = NULL;
+  ClothImitations *imitations;
+
+  r->simulated = TRUE;
+  for (guint i = 0; i < N * FRAMES; i++)
+    r->seen[i] = i % N < 3 || i % 7 == 0 ? 0. : 1.;
+  y = g_memdup2 (r->y, 3 * N * FRAMES * sizeof *y);
+  cloth_recording_interpolate (r);
+  g_assert_cmpmem (r->y, 3 * N * FRAMES * sizeof *y, y,
+      3 * N * FRAMES * sizeof *y);
+  /* one that a simulation has at 0 beside the others is there in an imitation, without noise */
+  imitations = cloth_imitations_new (r, 1);
+  for (guint f = 0; f < FRAMES; f++)
+    cloth_imitations_keep (imitations, 0, f, y + 3 * N * f);
+  cloth_imitations_spoil (imitations, &sound, 1., 1);
+  for (guint i = N; i < N * FRAMES; i++)
+    for (guint k = 0; k < 3; k++)
+      if (r->seen[i] == 0.)
+        g_assert_cmpfloat (imitations->list[0]->y[3 * i + k], ==, y[3 * i + k]);
+      else
+        g_assert_cmpfloat (imitations->list[0]->y[3 * i + k], !=, y[3 * i + k]);
+  cloth_imitations_free (imitations);
+  back = cloth_recording_correct (r, &m);
+  for (guint i = 0; i < N * FRAMES; i++)
+    for (guint k = 0; k < 3; k++) {
+      g_assert_true (isfinite (back->y[3 * i + k] + back->velocity[3 * i + k]));
+      if (i % COLUMNS < COLUMNS - 1)
+        g_assert_cmpfloat (back->y[3 * i + k], ==, y[3 * (i + 1) + k]);
+      else if (k == 2)          /* what no label shows lies with the rest */
+        g_assert_cmpfloat (back->y[3 * i + k], >, 0.5);
+    }
+  for (guint k = 0; k < 3; k++)
+    r->y[3 * (10 * N + 1) + k] = NAN;
+  cloth_recording_interpolate (r);
+  for (guint k = 0; k < 3; k++)
+    assert_within (r->y[3 * (10 * N + 1) + k], 0.5 * (y[3 * (9 * N + 1) + k] +
+            y[3 * (11 * N + 1) + k]), 1e-12);
+  /* without a simulation all are filled in */
+  r->simulated = FALSE;
+  cloth_recording_interpolate (r);
+  g_assert_cmpfloat (r->y[3 * (20 * N + 1)], !=, y[3 * (20 * N + 1)]);
+}
+
 /* A bell of width s takes the share 1 − exp (−ω²s²/2) of a sine; sharpening gives back all but
  * its third power. */
 static void
@@ -978,6 +1030,7 @@ main (int argc, char **argv)
   g_test_add_func ("/correction/places", test_places);
   g_test_add_func ("/correction/shifted", test_shifted);
   g_test_add_func ("/correction/mapped-noise", test_mapped_noise);
+  g_test_add_func ("/correction/simulated", test_simulated);
   g_test_add_func ("/correction/smooth", test_smooth);
   g_test_add_func ("/correction/measured", test_measured);
   g_test_add_func ("/correction/null", test_null);

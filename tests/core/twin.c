@@ -432,6 +432,51 @@ test_refused (gconstpointer data)
       g_error ("“%s” does not say “%s”", error->message, c->says[i]);
 }
 
+/* Where a simulation says where the recording's unseen places are, those of the twin are where it has them; only
+ * where it has none they are bridged: move_exactly is no straight line. */
+static void
+test_simulated (void)
+{
+  static const Sheet whole = {.name = "whole" }, hole = {.name =
+        "hole",.hole = TRUE
+  };
+  g_autoptr (ClothTake) take = write_take (&whole, move_exactly);
+  g_autoptr (ClothTake) holed = write_take (&hole, move_exactly);
+  g_autoptr (ClothRecording) r = record (&recorded, move_exactly);
+
+  for (guint f = 5; f < 45; f++)
+    r->seen[f * r->n + 3] = 0.;
+  for (guint k = 0; k < 3; k++) {
+    g_autoptr (GError) error = NULL;
+    g_autoptr (ClothRecording) twin = NULL;
+    gdouble worst = 0.;
+
+    r->simulated = k > 0;
+    twin = cloth_recording_new_twin (k < 2 ? take : holed, r, &error);
+    g_assert_no_error (error);
+    for (guint f = 5; f < 45; f++) {
+      const gfloat *uv = twin->scene->topology->uv + 2 * 3;
+      gdouble p[3];
+
+      move_exactly (uv[0], uv[1], twin->times[f], p);
+      for (guint c = 0; c < 3; c++) {
+        const gdouble off = fabs (twin->y[3 * (f * twin->n + 3) + c] - p[c]);
+
+        worst = fmax (worst, off);
+        g_assert_true (isfinite (off));
+      }
+      g_assert_cmpfloat (twin->seen[f * twin->n + 3], ==, 0.);
+    }
+    g_test_message ("%u: %g m", k, worst);
+    if (k == 0)
+      g_assert_cmpfloat (worst, >, 5e-3);
+    else if (k == 1)
+      g_assert_cmpfloat (worst, <, 1e-6);
+    else
+      g_assert_cmpfloat (worst, <, 1e-3);
+  }
+}
+
 /* A place that outlines alone tell of is told of no less because several simulations are held against it. */
 static void
 test_alike (void)
@@ -464,6 +509,7 @@ main (int argc, char **argv)
   g_test_add_func ("/twin/exact", test_exact);
   g_test_add_func ("/twin/bent", test_bent);
   g_test_add_func ("/twin/masked", test_masked);
+  g_test_add_func ("/twin/simulated", test_simulated);
   g_test_add_func ("/twin/alike", test_alike);
   g_test_add_func ("/twin/accepted", test_accepted);
   g_test_add_func ("/twin/seldom", test_seldom);

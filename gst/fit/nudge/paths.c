@@ -588,8 +588,7 @@ find_deviations (Paths * p, gdouble * sd)
 static void
 take_along (ClothRecording * r)
 {
-  if (!r->simulated)
-    cloth_recording_interpolate (r);
+  cloth_recording_interpolate (r);
   cloth_recording_place_held (r);
   cloth_recording_differentiate (r);
 }

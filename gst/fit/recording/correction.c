@@ -256,7 +256,7 @@ relabel (ClothRecording * r, const ClothMeasurement * m)
         take_noise (r->noise, (gsize) f * r->n + (guint) labels[v], noise,
             (gsize) f * r->n + v);
       for (guint k = 0; k < 3; k++) {
-        to[0][3 * v + k] = labels[v] < 0 ? 0. : y[3 * labels[v] + (gint) k];
+        to[0][3 * v + k] = labels[v] < 0 ? NAN : y[3 * labels[v] + (gint) k];
         to[1][3 * v + k] = labels[v] < 0 ? 0. :
             velocity[3 * labels[v] + (gint) k];
       }

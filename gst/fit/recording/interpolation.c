@@ -102,7 +102,8 @@ spread (Bridge * b)
   }
 }
 
-/* Vertices that were not seen while they were held are where their clamps were, if that is known. */
+/* Vertices that were not seen while they were held are where their clamps were, if that is known; others where
+ * a simulation has them, if one was asked. */
 static gboolean
 find_known (Bridge * b, guint frame, guint vertex)
 {
@@ -123,7 +124,7 @@ find_known (Bridge * b, guint frame, guint vertex)
     memcpy (place (b, frame, vertex), path, 3 * sizeof *path);
     return TRUE;
   }
-  return FALSE;
+  return r->simulated && isfinite (*place (b, frame, vertex));
 }
 
 /* Even motion between the frames before and after that know the vertex. */
@@ -262,7 +263,8 @@ cut_loose (Bridge * b)
   return any;
 }
 
-/* @recording: a recording whose @y is known where @seen is 1
+/* @recording: a recording whose @y is known where @seen is 1, and where it is finite if a simulation says
+ *   where places are that nobody saw
  *
  * Fills the rest of @y. A held vertex is where its clamp was. Between two frames that know
  * it a vertex moves evenly; before the first and after the last one it moves as its

@@ -259,7 +259,7 @@ cloth_recording_cut_blind (const ClothRecording * recording, gsize at,
  * @scale: of the noise
  * @random: where chance comes from
  * @place: (inout): gets an error like the recording's there, m; one that was not seen none that
- *   differs from place to place
+ *   differs from place to place, and none where a simulation has it
  */
 void
 cloth_recording_add_noise (const ClothRecording * recording, gsize at,
@@ -269,6 +269,8 @@ cloth_recording_add_noise (const ClothRecording * recording, gsize at,
 
   for (guint k = 0; k < 3; k++)
     error[k] = scale * cloth_random_gaussian (random);
+  if (recording->simulated && recording->seen[at] == 0.)
+    return;
   if (!recording->noise || recording->seen[at] == 0.) {
     for (guint k = 0; k < 3; k++)
       place[k] += recording->sigma * error[k];

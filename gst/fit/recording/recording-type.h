@@ -38,9 +38,9 @@ typedef struct {
  *   nothing does, [n_frames][n]
  * @start: (nullable): where the cloth is in the first frame, [n][3], NaN where that isn't known, rather than what
  *   was seen there
- * @between: of a twin, standard deviation of what of a coordinate its own frames leave unknown at the recording's times, m, where that is
- *   more than noise
- * @simulated: places that nobody saw are where a simulation has them, and no bridges
+ * @between: of a twin, standard deviation of what its own frames leave unknown of a coordinate at the recording's
+ *   times, where that is more than noise, m
+ * @simulated: places that nobody saw are where a simulation has them, and no bridges: filling in leaves them
  */
 typedef struct {
   gchar *name;

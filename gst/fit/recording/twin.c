@@ -565,6 +565,7 @@ fill_positions (const Twin * t, ClothRecording * twin)
 
     for (guint v = 0; v < twin->n; v++) {
       gsize at = (gsize) f * twin->n + v;
+      gboolean known = TRUE;
 
       for (guint k = 0; k < 3; k++) {
         gdouble sum = 0.;
@@ -573,12 +574,14 @@ fill_positions (const Twin * t, ClothRecording * twin)
           if (m->weights[i] != 0.)
             sum += m->weights[i] *
                 t->samples[(gsize) (m->first + i) * row + 3 * v + k];
-        if (!isfinite (sum))
-          twin->seen[at] = 0.;
+        known &= isfinite (sum) != 0;
         twin->y[3 * at + k] = sum;
       }
-      for (guint k = 0; k < 3 && twin->seen[at] == 0.; k++)
-        twin->y[3 * at + k] = 0.;
+      if (!known)
+        twin->seen[at] = 0.;
+      known &= twin->seen[at] > 0. || twin->simulated;
+      for (guint k = 0; k < 3 && !known; k++)
+        twin->y[3 * at + k] = NAN;
     }
   }
 }
@@ -615,8 +618,9 @@ twin_init (Twin * t, ClothTake * take, const ClothRecording * recorded,
  *   reading it says
  *
  * What was not seen counts as not simulated and is bridged alike, so that an observer does the
- * same to both; vertices that the simulation has no position of are masked too. Frames before
- * and after the recording are cut. The scene is the recording's, but for the start.
+ * same to both; it stays where a simulation says where the recording's is. Vertices that the
+ * simulation has no position of are masked too. Frames before and after the recording are cut.
+ * The scene is the recording's, but for the start.
  *
  * Returns: (transfer full) (nullable): the simulation at the recording's vertices and times; its
  *   sigma is that of a coordinate of recorded less simulated, the noise of both, m
@@ -644,6 +648,7 @@ cloth_recording_new_twin (ClothTake * simulated,
   twin->sigma = hypot (recorded->sigma, t.noise);
   twin->seen = g_memdup2 (recorded->seen, all * sizeof *recorded->seen);
   twin->noise = cloth_recording_noise_ref (recorded->noise);
+  twin->simulated = recorded->simulated;
   twin->y = g_new (gdouble, 3 * all);
   twin->velocity = g_new (gdouble, 3 * all);
   fill_positions (&t, twin);
