@@ -23,6 +23,18 @@ count_features (const ClothGapTest * test, const ClothNormalEquations * normal)
   return count;
 }
 
+/* @overdispersion: φ₀
+ * @r: sum of the squares of what is left
+ * @n_features: of how many features
+ *
+ * Returns: how much more than the noise a square of the residual counts
+ */
+gdouble
+cloth_gap_dispersion (gdouble overdispersion, gdouble r, gdouble n_features)
+{
+  return overdispersion * MAX (r / n_features, LEAST_DISPERSION);
+}
+
 /* @test: what is tested
  * @normal: normal equations
  * @reduced: what is left of them
@@ -33,8 +45,8 @@ gdouble
 cloth_gap_test_dispersion (const ClothGapTest * test,
     const ClothNormalEquations * normal, const ClothReducedEquations * reduced)
 {
-  return test->overdispersion * MAX (reduced->r / count_features (test,
-          normal), LEAST_DISPERSION);
+  return cloth_gap_dispersion (test->overdispersion, reduced->r,
+      count_features (test, normal));
 }
 
 /* @test: what is tested

@@ -35,6 +35,8 @@ typedef struct {
 gboolean cloth_gap_test_reduce (const ClothGapTest * test,
     const ClothNormalEquations * normal, const gboolean * blocks,
     const guint * directions, guint n, ClothReducedEquations * reduced);
+gdouble cloth_gap_dispersion (gdouble overdispersion, gdouble r,
+    gdouble n_features);
 gdouble cloth_gap_test_dispersion (const ClothGapTest * test,
     const ClothNormalEquations * normal, const ClothReducedEquations * reduced);
 

@@ -7,18 +7,7 @@
 #include "gst/gap/verdict/confirm.h"
 
 #include "gst/gap/verdict/agreement.h"
-
-static gboolean
-is_ambiguous (const ClothGapResult * r)
-{
-  for (guint i = 0; i < r->effects->len; i++) {
-    const ClothGapEffect *e = &g_array_index (r->effects, ClothGapEffect, i);
-
-    if (e->accepted && e->group >= 0)
-      return TRUE;
-  }
-  return FALSE;
-}
+#include "gst/gap/verdict/judge.h"
 
 /* @d: a diagnosis whose verdict is decided, and measured with the effects in the user's simulator
  *
@@ -41,5 +30,7 @@ cloth_diagnosis_confirm (ClothDiagnosis * d)
   if (!explained)
     r->verdict = CLOTH_GAP_UNEXPLAINED;
   else
-    r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
+    r->verdict =
+        cloth_gap_result_is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS :
+        CLOTH_GAP_EXPLAINED;
 }

@@ -64,14 +64,20 @@ add_camera_effects (ClothDiagnosis * d)
     cloth_gap_result_add_group (d->result, capture_sentence, NAN);
 }
 
-/* Whether another effect would do as well as one that is accepted. */
-static gboolean
-is_ambiguous (const ClothGapResult * r)
+/* @result: a result
+ *
+ * Returns: whether another effect would do as well as one that is accepted
+ */
+gboolean
+cloth_gap_result_is_ambiguous (const ClothGapResult * result)
 {
-  for (guint i = 0; i < r->effects->len; i++)
-    if (g_array_index (r->effects, ClothGapEffect, i).accepted
-        && g_array_index (r->effects, ClothGapEffect, i).group >= 0)
+  for (guint i = 0; i < result->effects->len; i++) {
+    const ClothGapEffect *e = &g_array_index (result->effects, ClothGapEffect,
+        i);
+
+    if (e->accepted && e->group >= 0)
       return TRUE;
+  }
   return FALSE;
 }
 
@@ -168,7 +174,9 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
         "a simulation of this cloth is off by when nothing acts.",
         100. * d->unknown_share);
   } else if (d->n_accepted || cloth_diagnosis_count_faults (d)) {
-    r->verdict = is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS : CLOTH_GAP_EXPLAINED;
+    r->verdict =
+        cloth_gap_result_is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS :
+        CLOTH_GAP_EXPLAINED;
   } else if (likely) {
     r->verdict = CLOTH_GAP_UNDECIDABLE;
     r->reason = g_strdup_printf ("It is likelier than not that an effect acts, "

@@ -7,6 +7,7 @@
 
 G_BEGIN_DECLS
 
+gboolean cloth_gap_result_is_ambiguous (const ClothGapResult * result);
 void cloth_diagnosis_decide (ClothDiagnosis * d);
 
 G_END_DECLS
