@@ -220,8 +220,8 @@ step_faults (Search * s)
       columns[n++] = c->first + k;
   }
   r = cloth_normal_equations_sum (s->normal, NULL, columns, n, g, score);
-  phi = OVERDISPERSION * MAX (r / (s->normal->per_block * s->normal->n_blocks),
-      0.1);
+  phi = cloth_gap_dispersion (OVERDISPERSION, r, s->normal->per_block *
+      s->normal->n_blocks);
   for (guint i = 0; i < d->n_faults; i++) {
     const ClothCandidate *c = candidate_at (s, d->faults[i].candidate);
 
@@ -255,18 +255,25 @@ step_faults (Search * s)
   return TRUE;
 }
 
-/* The normal equations, linearised at the known faults. */
-static gboolean
-linearise_again (Search * s)
+/* Looks at the pictures as cameras with the known faults took them. */
+static void
+look_again (Search * s)
 {
-  ClothCameraErrors errors;
-
   for (guint i = 0; i < s->views->len; i++) {
     ClothCameraView *view = g_ptr_array_index (s->views, i);
 
     apply_faults (s->d, view);
     cloth_camera_view_solve_unseen (view, s->d->options->threads);
   }
+}
+
+/* The normal equations, linearised at the known faults. */
+static gboolean
+linearise_again (Search * s)
+{
+  ClothCameraErrors errors;
+
+  look_again (s);
   cloth_normal_equations_free (s->normal);
   s->normal = linearise (s, s->views, &errors);
   if (s->normal)
@@ -457,11 +464,14 @@ start_fault (const Search * s, const ClothGapScore * score,
   f->constancy_p_value = score->constancy_p_value;
 }
 
-/* Accepts and fits the likeliest fault, if it is supported. */
+/* Accepts and fits the likeliest fault, if it is supported. When it can't be fitted all is as before, but that
+ * there are no equations any more. */
 static gboolean
 accept_fault (Search * s, const GArray * scores)
 {
   ClothDiagnosis *d = s->d;
+  const ClothCameraErrors errors = d->camera_errors;
+  ClothCameraFault before[G_N_ELEMENTS (d->faults)];
   ClothCameraFault *f = &d->faults[d->n_faults];
   const ClothGapScore *score = scores->len ? &g_array_index (scores,
       ClothGapScore, 0) : NULL;
@@ -472,10 +482,14 @@ accept_fault (Search * s, const GArray * scores)
     return FALSE;
   if (!d->n_faults)
     find_alike (s, score->candidate);
+  memcpy (before, d->faults, sizeof before);
   start_fault (s, score, f);
   d->n_faults++;
   if (!fit_faults (s)) {
     d->n_faults--;
+    memcpy (d->faults, before, sizeof before);
+    d->camera_errors = errors;
+    look_again (s);
     return FALSE;
   }
   return TRUE;
