@@ -1000,6 +1000,7 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
 {
   GstClothSync *self = GST_CLOTH_SYNC (agg);
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  const GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
   GstFlowReturn ret;
   GstClockTimeDiff first = 0;
   gboolean has_first = FALSE;
@@ -1032,6 +1033,13 @@ gst_cloth_sync_aggregate (GstAggregator * agg, gboolean timeout)
   }
   if (heads.n_waiting > 0 && !timeout) {
     goto done;                  /* what came was clipped away, or the pad is new */
+  }
+  if (klass->look) {
+    ret = klass->look (self, heads.head, heads.n);
+    if (ret != GST_FLOW_OK) {
+      goto done;
+    }
+    ret = GST_AGGREGATOR_FLOW_NEED_DATA;
   }
   if (heads.n_heads == 0) {
     gst_cloth_sync_look_for_silence (self, &heads, GST_CLOCK_STIME_NONE);

@@ -19,6 +19,8 @@ G_DECLARE_DERIVABLE_TYPE (GstClothSync, gst_cloth_sync, GST, CLOTH_SYNC,
  *   %GST_FLOW_OK, or returns %GST_AGGREGATOR_FLOW_NEED_DATA when a pad without caps
  *   has to give its own first. @downstream is what the peer allows. Optional: without
  *   it the source pad takes what the peer allows.
+ * @look: looks at the frames that are next, @heads, as @views of @process_set, which may set pads' offsets:
+ *   %GST_AGGREGATOR_FLOW_NEED_DATA when it did. Optional.
  * @process_set: one set of frames of the same instant. @views has @n entries, one for
  *   every pad index up to the highest in use; %NULL where the pad has no frame in this
  *   set. Bit i of @mask is set when @views[i] is there. @pts and @duration are the
@@ -40,13 +42,14 @@ struct _GstClothSyncClass {
   gboolean (*set_pad_caps) (GstClothSync * sync, guint index, GstCaps * caps);
   GstFlowReturn (*negotiate_src) (GstClothSync * sync, GstCaps * downstream,
       GstCaps ** caps);
+  GstFlowReturn (*look) (GstClothSync * sync, GstBuffer ** heads, guint n);
   GstFlowReturn (*process_set) (GstClothSync * sync, GstBuffer ** views, guint n,
       guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out);
   void (*reset) (GstClothSync * sync);
   const gchar *(*get_camera) (GstClothSync * sync, guint index);
   const gchar *prefix;
 
-  gpointer _reserved[3];
+  gpointer _reserved[2];
 };
 
 /* @sync: the element, in its instance init

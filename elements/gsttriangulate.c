@@ -13,7 +13,8 @@
  * covariance, and whether three or more views agree on it, only two saw it, or it is
  * unseen. A vertex seen by one camera, or contradicted, is unseen; nothing is
  * carried over from earlier frames. Clocks that the rig knows to differ (`offset_s`) are
- * known from the first pictures on, which make no mesh then.
+ * known once the pictures of a camera say whose they are: of one whose first picture doesn't, the pictures
+ * that do make no mesh.
  *
  * The mesh's frame rate is the cameras'. While they differ it is the last one that was
  * sent, so that a camera joining late doesn't change it in mid-stream; 0/1, variable, when
@@ -105,6 +106,7 @@ struct _GstTriangulate
   GstTriangulateView view[GST_CLOTH_SYNC_MAX_PADS];
   guint64 sequence;
   gboolean had_others;          /* more than one camera has been linked */
+  gboolean has_looked;          /* at the first pictures */
   Check check;
 };
 
@@ -444,7 +446,7 @@ gst_triangulate_forget (GstTriangulate * self)
   g_clear_pointer (&self->pool, cloth_pool_free);
   gst_triangulate_clear_merges (self);
   self->fps_n = -1;
-  self->had_others = FALSE;
+  self->had_others = self->has_looked = FALSE;
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     gst_triangulate_view_forget (&self->view[i]);
   }
@@ -582,6 +584,54 @@ gst_triangulate_has_cameras (GstTriangulate * self)
   return FALSE;
 }
 
+static void
+gst_triangulate_set_name (GstTriangulateView * view,
+    const GstTriangulateSeen * seen)
+{
+  if (seen->camera[0] != '\0' && g_strcmp0 (seen->camera, view->meta) != 0) {
+    g_free (view->meta);
+    view->meta = g_strdup (seen->camera);
+  }
+}
+
+/* Whose the first pictures are, before they are joined by their cameras' clocks. What is wrong with them
+ * is told when they are. */
+static GstFlowReturn
+gst_triangulate_look_ahead (GstClothSync * sync, GstBuffer ** heads, guint n)
+{
+  GstTriangulate *self = GST_TRIANGULATE (sync);
+  gboolean moved;
+
+  if (self->has_looked || !self->rig || !self->board) {
+    return GST_FLOW_OK;
+  }
+  self->has_looked = TRUE;
+  for (guint i = 0; i < n; i++) {
+    g_autoptr (GstBuffer) unpacked = NULL;
+    GstTriangulateSeen seen;
+
+    self->view[i].carries = FALSE;
+    if (!heads[i]) {
+      continue;
+    }
+    if (self->view[i].observations) {
+      unpacked = gst_buffer_new ();
+      if (!gst_cloth_observations_unpack (heads[i], unpacked, NULL)) {
+        continue;
+      }
+    }
+    self->view[i].carries = gst_triangulate_board_see (self->board,
+        unpacked ? unpacked : heads[i], &seen);
+    if (self->view[i].carries) {
+      gst_triangulate_set_name (&self->view[i], &seen);
+    }
+  }
+  if (!gst_triangulate_views_map (sync, self->view, self->rig, &moved)) {
+    return GST_FLOW_ERROR;
+  }
+  return moved ? GST_AGGREGATOR_FLOW_NEED_DATA : GST_FLOW_OK;
+}
+
 static GstFlowReturn
 gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out)
@@ -601,8 +651,6 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
   }
   self->sequence++;
   for (i = 0; i < n; i++) {
-    const gchar *name;
-
     self->view[i].carries = FALSE;
     if (!views[i]) {
       continue;
@@ -622,11 +670,7 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     if (n_carried++ == 0) {
       self->sequence = carried[i].sequence;
     }
-    name = carried[i].camera;
-    if (name[0] != '\0' && g_strcmp0 (name, self->view[i].meta) != 0) {
-      g_free (self->view[i].meta);
-      self->view[i].meta = g_strdup (name);
-    }
+    gst_triangulate_set_name (&self->view[i], &carried[i]);
   }
   ret = GST_FLOW_ERROR;
   if (!gst_triangulate_views_map (sync, self->view, self->rig, &moved)) {
@@ -753,6 +797,7 @@ gst_triangulate_class_init (GstTriangulateClass * klass)
   agg_class->aggregate = gst_triangulate_aggregate;
   sync_class->set_pad_caps = gst_triangulate_set_pad_caps;
   sync_class->negotiate_src = gst_triangulate_negotiate_src;
+  sync_class->look = gst_triangulate_look_ahead;
   sync_class->process_set = gst_triangulate_process_set;
   sync_class->reset = gst_triangulate_reset;
   sync_class->get_camera = gst_triangulate_get_camera;
