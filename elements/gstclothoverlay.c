@@ -134,6 +134,7 @@ struct _GstClothOverlay
 
   /* streaming thread */
   GstVideoInfo info;
+  GQueue tags;                  /* TAG events that wait for the first picture */
   GstCaps *video_caps;
   gboolean knows_strides;       /* downstream, of GstVideoMeta */
   GArray *places;               /* of dots, of vertices */
@@ -839,6 +840,44 @@ gst_cloth_overlay_src_query (GstAggregator * agg, GstQuery * query)
       query);
 }
 
+static void
+gst_cloth_overlay_send_tags (GstClothOverlay * self)
+{
+  while (!g_queue_is_empty (&self->tags)) {
+    gst_pad_push_event (GST_AGGREGATOR_SRC_PAD (self),
+        g_queue_pop_head (&self->tags));
+  }
+}
+
+/* What was said of the pictures before the first one goes on with it, when the stream has begun. */
+static GstPadProbeReturn
+pass_tags (GstPad * pad, GstPadProbeInfo * info, gpointer data)
+{
+  gst_cloth_overlay_send_tags (data);
+  return GST_PAD_PROBE_OK;
+}
+
+/* The base class would drop it. */
+static gboolean
+gst_cloth_overlay_take_tags (GstClothOverlay * self, GstEvent * event)
+{
+  g_autoptr (GstEvent) segment =
+      gst_pad_get_sticky_event (GST_AGGREGATOR_SRC_PAD (self),
+      GST_EVENT_SEGMENT, 0);
+
+  g_queue_push_tail (&self->tags, event);
+  if (segment) {
+    gst_cloth_overlay_send_tags (self);
+  }
+  return TRUE;
+}
+
+static void
+gst_cloth_overlay_forget_tags (GstClothOverlay * self)
+{
+  g_queue_clear_full (&self->tags, (GDestroyNotify) gst_event_unref);
+}
+
 /* A picture with much to draw takes its time, and holds the streaming thread. */
 static gboolean
 gst_cloth_overlay_sink_event (GstAggregator * agg, GstAggregatorPad * pad,
@@ -851,6 +890,8 @@ gst_cloth_overlay_sink_event (GstAggregator * agg, GstAggregatorPad * pad,
       g_atomic_int_set (&self->stopped, TRUE);
     } else if (GST_EVENT_TYPE (event) == GST_EVENT_FLUSH_STOP) {
       g_atomic_int_set (&self->stopped, FALSE);
+    } else if (GST_EVENT_TYPE (event) == GST_EVENT_TAG) {
+      return gst_cloth_overlay_take_tags (self, event);
     }
   }
   return GST_AGGREGATOR_CLASS (gst_cloth_overlay_parent_class)->sink_event (agg,
@@ -902,6 +943,7 @@ gst_cloth_overlay_stop (GstAggregator * agg)
 {
   GstClothOverlay *self = GST_CLOTH_OVERLAY (agg);
 
+  gst_cloth_overlay_forget_tags (self);
   gst_caps_replace (&self->video_caps, NULL);
   g_clear_pointer (&self->mesh, mesh_free);
   self->camera = NULL;
@@ -930,6 +972,7 @@ gst_cloth_overlay_finalize (GObject * object)
 {
   GstClothOverlay *self = GST_CLOTH_OVERLAY (object);
 
+  gst_cloth_overlay_forget_tags (self);
   gst_caps_replace (&self->video_caps, NULL);
   g_array_unref (self->places);
   g_array_unref (self->cells);
@@ -985,5 +1028,8 @@ gst_cloth_overlay_init (GstClothOverlay * self)
   self->cells = g_array_new (FALSE, FALSE, sizeof (gfloat));
   gst_cloth_damage_watch (&self->settings.damage, GST_ELEMENT (self),
       GST_AGGREGATOR_SRC_PAD (self));
+  g_queue_init (&self->tags);
+  gst_pad_add_probe (GST_AGGREGATOR_SRC_PAD (self), GST_PAD_PROBE_TYPE_BUFFER,
+      pass_tags, self, NULL);
   gst_cloth_sync_add_always_pad (GST_CLOTH_SYNC (self), "sink");
 }

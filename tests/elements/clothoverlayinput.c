@@ -59,6 +59,77 @@ GST_START_TEST (test_caps_query)
 
 GST_END_TEST;
 
+static void
+push_title (GstHarness * h, const gchar * title)
+{
+  gst_harness_push_event (h, gst_event_new_tag (gst_tag_list_new
+          (GST_TAG_TITLE, title, NULL)));
+}
+
+/* The title that comes before the next picture, or before the end. */
+static void
+expect_title (GstHarness * h, const gchar * title)
+{
+  GstEventType before = GST_EVENT_UNKNOWN;
+  gboolean found = FALSE;
+
+  while (!found) {
+    g_autoptr (GstEvent) event = gst_harness_pull_event (h);
+    g_autofree gchar *is = NULL;
+    GstTagList *tags;
+
+    fail_unless (event != NULL);
+    found = GST_EVENT_TYPE (event) == GST_EVENT_TAG;
+    if (found) {
+      gst_event_parse_tag (event, &tags);
+      fail_unless (gst_tag_list_get_string (tags, GST_TAG_TITLE, &is));
+      fail_unless_equals_string (is, title);
+      fail_unless_equals_int (before, before == GST_EVENT_UNKNOWN ?
+          GST_EVENT_UNKNOWN : GST_EVENT_SEGMENT);
+    }
+    before = GST_EVENT_TYPE (event);
+    fail_if (before == GST_EVENT_EOS);
+  }
+}
+
+/* What is said of the pictures goes on in its place; of meshes nothing does. */
+GST_START_TEST (test_tags)
+{
+  GstElement *element =
+      gst_object_ref_sink (gst_element_factory_make ("clothoverlay", NULL));
+  GstHarness *h = gst_harness_new_with_element (element, "sink", "src");
+  GstHarness *mesh = gst_harness_new_with_element (element, "mesh", NULL);
+  GstVideoInfo info;
+  GstEvent *event;
+
+  /* no mesh will come */
+  gst_harness_push_event (mesh, gst_event_new_stream_start ("mesh"));
+  push_title (mesh, "of the mesh");
+  gst_harness_push_event (mesh, gst_event_new_eos ());
+  gst_buffer_unref (picture ("GRAY8", 50, 40, 0, &info));
+  gst_harness_set_src_caps (h, gst_video_info_to_caps (&info));
+  push_title (h, "first");
+  for (guint i = 0; i < 2; i++) {
+    GstBuffer *buffer = picture ("GRAY8", 50, 40, 0, &info);
+
+    GST_BUFFER_PTS (buffer) = i * GST_SECOND;
+    gst_harness_push (h, buffer);
+    gst_buffer_unref (gst_harness_pull (h));
+    expect_title (h, i == 0 ? "first" : "second");
+    push_title (h, i == 0 ? "second" : "third");
+  }
+  gst_harness_push_event (h, gst_event_new_eos ());
+  expect_title (h, "third");
+  event = gst_harness_pull_event (h);
+  fail_unless_equals_int (GST_EVENT_TYPE (event), GST_EVENT_EOS);
+  gst_event_unref (event);
+  gst_harness_teardown (mesh);
+  gst_harness_teardown (h);
+  gst_object_unref (element);
+}
+
+GST_END_TEST;
+
 /* A flushing seek in a real pipeline: the frame asked for comes next, and the film goes
  * on to its end. */
 GST_START_TEST (test_seek)
@@ -615,6 +686,7 @@ clothoverlayinput_suite (void)
   suite_add_tcase (s, tc);
   tcase_add_test (tc, test_caps_change);
   tcase_add_test (tc, test_caps_query);
+  tcase_add_test (tc, test_tags);
   tcase_add_test (tc, test_seek);
   tcase_add_test (tc, test_one_pixel);
   tcase_add_test (tc, test_bad_coordinates);
