@@ -14,6 +14,7 @@
 #include "elements/gstclothsyncgaps.h"
 #include "elements/gstclothsyncheads.h"
 #include "elements/gstclothsyncmessages.h"
+#include "elements/gstclothsyncqueries.h"
 
 GST_DEBUG_CATEGORY_STATIC (cloth_sync_debug);
 #define GST_CAT_DEFAULT cloth_sync_debug
@@ -93,7 +94,7 @@ G_DEFINE_ABSTRACT_TYPE_WITH_CODE (GstClothSync, gst_cloth_sync,
     GST_DEBUG_CATEGORY_INIT (cloth_sync_debug, "clothsync", 0,
         "joining of streams by running time"));
 
-/* Tolerance and latency follow from the pads' frame rates and offsets. */
+/* Tolerance and latency follow from the pads' number, frame rates and offsets. */
 static void
 gst_cloth_sync_update_timing (GstClothSync * self)
 {
@@ -221,6 +222,8 @@ gst_cloth_sync_request_new_pad (GstElement * element, GstPadTemplate * templ,
 
   if (pad) {
     gst_cloth_sync_update_timing (GST_CLOTH_SYNC (element));
+    gst_element_post_message (element,
+        gst_message_new_latency (GST_OBJECT (element)));
   }
   return pad;
 }
@@ -275,6 +278,8 @@ gst_cloth_sync_release_pad (GstElement * element, GstPad * pad)
   priv->released |= bit;
   GST_OBJECT_UNLOCK (self);
   gst_cloth_sync_update_timing (self);
+  gst_element_post_message (element,
+      gst_message_new_latency (GST_OBJECT (element)));
 }
 
 /* Tells the subclass, from the streaming thread, of the pads that have gone. */
@@ -353,13 +358,9 @@ gst_cloth_sync_sink_event_pre_queue (GstAggregator * agg,
 static GstFlowReturn
 gst_cloth_sync_take_caps (GstClothSync * self)
 {
-  g_autoptr (GList) pads = NULL;
+  g_autoptr (GList) pads = gst_cloth_sync_pad_list (GST_ELEMENT (self));
   GstFlowReturn ret = GST_FLOW_OK;
 
-  GST_OBJECT_LOCK (self);
-  pads = g_list_copy_deep (GST_ELEMENT (self)->sinkpads,
-      (GCopyFunc) (gpointer) gst_object_ref, NULL);
-  GST_OBJECT_UNLOCK (self);
   for (GList * l = pads; l; l = l->next) {
     g_autoptr (GstClothSyncPad) pad = l->data;
 
@@ -402,7 +403,7 @@ gst_cloth_sync_restart (GstClothSync * self)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
   GstClothSyncClass *klass = GST_CLOTH_SYNC_GET_CLASS (self);
-  g_autoptr (GList) pads = NULL;
+  g_autoptr (GList) pads = gst_cloth_sync_pad_list (GST_ELEMENT (self));
 
   priv->has_last = FALSE;
   priv->gaps.told = GST_CLOCK_STIME_NONE;
@@ -410,8 +411,6 @@ gst_cloth_sync_restart (GstClothSync * self)
   priv->n_lately = priv->n_lacking = 0;
   GST_AGGREGATOR_PAD (GST_AGGREGATOR_SRC_PAD (self))->segment.position =
       GST_CLOCK_TIME_NONE;
-  pads = g_list_copy_deep (GST_ELEMENT (self)->sinkpads,
-      (GCopyFunc) (gpointer) gst_object_ref, NULL);
   GST_OBJECT_UNLOCK (self);
   for (GList * l = pads; l; l = l->next) {
     gst_cloth_sync_pad_restart (GST_CLOTH_SYNC_PAD (l->data),
@@ -1175,6 +1174,7 @@ gst_cloth_sync_class_init (GstClothSyncClass * klass)
   agg_class->sink_event_pre_queue = gst_cloth_sync_sink_event_pre_queue;
   agg_class->clip = gst_cloth_sync_pad_clip;
   agg_class->get_next_time = gst_cloth_sync_get_next_time;
+  agg_class->src_query = gst_cloth_sync_src_query;
   agg_class->aggregate = gst_cloth_sync_aggregate;
   agg_class->update_src_caps = gst_cloth_sync_update_src_caps;
   agg_class->propose_allocation = gst_cloth_sync_propose_allocation;

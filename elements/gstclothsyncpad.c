@@ -16,6 +16,18 @@
 
 G_DEFINE_TYPE (GstClothSyncPad, gst_cloth_sync_pad, GST_TYPE_AGGREGATOR_PAD);
 
+GList *
+gst_cloth_sync_pad_list (GstElement * element)
+{
+  GList *pads;
+
+  GST_OBJECT_LOCK (element);
+  pads = g_list_copy_deep (element->sinkpads,
+      (GCopyFunc) (gpointer) gst_object_ref, NULL);
+  GST_OBJECT_UNLOCK (element);
+  return pads;
+}
+
 GstBuffer *
 gst_cloth_sync_pad_look (GstClothSyncPad * pad, GstClockTimeDiff * time)
 {

@@ -78,6 +78,9 @@ typedef enum {
 
 GType gst_cloth_sync_pad_get_type (void);
 
+/* Returns: (transfer full): the sink pads of @element */
+GList *gst_cloth_sync_pad_list (GstElement * element);
+
 /* @time: (out): common time of the frame, when that is known already, else
  *   %GST_CLOCK_STIME_NONE
  *

@@ -475,6 +475,113 @@ GST_START_TEST (test_live_latency)
 
 GST_END_TEST;
 
+/* One stream waits for nothing; that others come and go is told. */
+GST_START_TEST (test_live_latency_alone)
+{
+  Bench b;
+
+  bench_init (&b, 1, TRUE);
+  push (&b, 0, 0);
+  expect (&b, 0, 1);
+  gst_harness_set_upstream_latency (b.in[0], 20 * MS);
+  /* so that the number of pads is all that changes */
+  g_object_set (b.sync, "latency", (guint64) 200 * MS, "tolerance",
+      (guint64) 0, NULL);
+  fail_unless_equals_uint64 (gst_harness_query_latency (b.src), 20 * MS);
+  gst_cloth_sync_set_pad_offset (GST_CLOTH_SYNC (b.sync), 0, 2 * MS);
+  fail_unless_equals_uint64 (gst_harness_query_latency (b.src), 22 * MS);
+  gst_bus_set_flushing (b.bus, TRUE);
+  gst_bus_set_flushing (b.bus, FALSE);
+  bench_add_pad (&b, 1, "test/x-frames,framerate=30/1");
+  gst_harness_set_live (b.in[1], TRUE);
+  gst_message_unref (gst_bus_pop_filtered (b.bus, GST_MESSAGE_LATENCY));
+  fail_unless_equals_uint64 (gst_harness_query_latency (b.src), 222 * MS);
+  gst_bus_set_flushing (b.bus, TRUE);
+  gst_bus_set_flushing (b.bus, FALSE);
+  bench_remove_pad (&b, 1);
+  gst_message_unref (gst_bus_pop_filtered (b.bus, GST_MESSAGE_LATENCY));
+  fail_unless_equals_uint64 (gst_harness_query_latency (b.src), 22 * MS);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* ---- seeking ---- */
+
+typedef struct
+{
+  gboolean answers, seekable;
+  gint64 start, stop;
+} Range;
+
+static const Range *ranges[2];
+static GstPadQueryFunction harness_query;
+
+static gboolean
+answer_seeking (GstPad * pad, GstObject * parent, GstQuery * query)
+{
+  const Range *range = ranges[GPOINTER_TO_UINT (g_object_get_data (G_OBJECT
+              (pad), "number"))];
+  GstFormat format;
+
+  if (GST_QUERY_TYPE (query) != GST_QUERY_SEEKING) {
+    return harness_query (pad, parent, query);
+  }
+  gst_query_parse_seeking (query, &format, NULL, NULL, NULL);
+  fail_unless_equals_int (format, GST_FORMAT_TIME);
+  gst_query_set_seeking (query, format, range->seekable, range->start,
+      range->stop);
+  return range->answers;
+}
+
+/* What is joined can be sought where all streams can. */
+GST_START_TEST (test_seeking)
+{
+  static const Range all = { TRUE, TRUE, 0, -1 }, film =
+      { TRUE, TRUE, 0, 9 * GST_SECOND };
+  static const Range part = { TRUE, TRUE, GST_SECOND, 10 * GST_SECOND };
+  static const Range none = { TRUE, FALSE, 0, 9 * GST_SECOND };
+  static const Range silent = { FALSE, TRUE, 0, 9 * GST_SECOND };
+  static const struct
+  {
+    const Range *range[2], is;
+  } cases[] = {
+    {{&all, &all}, {TRUE, TRUE, 0, -1}},
+    {{&all, &film}, {TRUE, TRUE, 0, 9 * GST_SECOND}},
+    {{&film, &all}, {TRUE, TRUE, 0, 9 * GST_SECOND}},
+    {{&part, &film}, {TRUE, TRUE, GST_SECOND, 9 * GST_SECOND}},
+    {{&film, &part}, {TRUE, TRUE, GST_SECOND, 9 * GST_SECOND}},
+    {{&none, &film}, {TRUE, FALSE, 0, -1}},
+    {{&film, &none}, {TRUE, FALSE, 0, -1}},
+    {{&film, &silent}, {TRUE, FALSE, 0, -1}},
+  };
+  Bench b;
+
+  bench_init (&b, 2, FALSE);
+  harness_query = GST_PAD_QUERYFUNC (b.in[0]->srcpad);
+  for (guint i = 0; i < 2; i++) {
+    g_object_set_data (G_OBJECT (b.in[i]->srcpad), "number",
+        GUINT_TO_POINTER (i));
+    gst_pad_set_query_function (b.in[i]->srcpad, answer_seeking);
+  }
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autoptr (GstQuery) query = gst_query_new_seeking (GST_FORMAT_TIME);
+    gboolean seekable;
+    gint64 start, stop;
+
+    ranges[0] = cases[i].range[0];
+    ranges[1] = cases[i].range[1];
+    fail_unless (gst_pad_peer_query (b.src->sinkpad, query));
+    gst_query_parse_seeking (query, NULL, &seekable, &start, &stop);
+    fail_unless_equals_int (seekable, cases[i].is.seekable);
+    fail_unless_equals_int64 (start, cases[i].is.start);
+    fail_unless_equals_int64 (stop, cases[i].is.stop);
+  }
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
 /* ---- changes under way ---- */
 
 GST_START_TEST (test_flush)
@@ -725,6 +832,8 @@ clothsynclive_suite (void)
   tcase_add_test (tc, test_live_late);
   tcase_add_test (tc, test_film_not_late);
   tcase_add_test (tc, test_live_latency);
+  tcase_add_test (tc, test_live_latency_alone);
+  tcase_add_test (tc, test_seeking);
   tcase_add_test (tc, test_live_latency_default);
   tcase_add_test (tc, test_flush);
   tcase_add_test (tc, test_caps_change);
