@@ -324,30 +324,36 @@ gst_cloth_filter_tell_latency (GstClothFilter * self, GstQuery * query)
   gst_cloth_add_latency (query, own);
 }
 
-/* What sends nothing but encoded pictures asks in vain what is taken, or whether they are, and
- * says no more than that it could not negotiate. */
-static void
-gst_cloth_filter_look_for_encoded (GstClothFilter * self, GstQuery * query)
+/* Where negotiation fails upstream says no more than that: with caps that are refused, or with an
+ * end before there were any. When it has nothing but encoded pictures the user is told so. */
+static GstPadProbeReturn
+look_for_encoded (GstPad * pad, GstPadProbeInfo * info, gpointer data)
 {
+  GstClothFilter *self = data;
   GstClothFilterPrivate *priv = gst_cloth_filter_get_instance_private (self);
-  GstPad *sinkpad = GST_BASE_TRANSFORM_SINK_PAD (self);
-  g_autoptr (GstCaps) taken = gst_pad_get_pad_template_caps (sinkpad);
-  GstCaps *offered = NULL;
+  GstEvent *event = GST_PAD_PROBE_INFO_EVENT (info);
+  g_autoptr (GstCaps) taken = gst_pad_get_pad_template_caps (pad);
+  g_autoptr (GstCaps) offered = NULL;
   const gchar *decoder;
 
-  if (GST_QUERY_TYPE (query) == GST_QUERY_CAPS)
-    gst_query_parse_caps (query, &offered);
-  else if (GST_QUERY_TYPE (query) == GST_QUERY_ACCEPT_CAPS)
-    gst_query_parse_accept_caps (query, &offered);
+  if (GST_EVENT_TYPE (event) == GST_EVENT_CAPS) {
+    GstCaps *caps;
+
+    gst_event_parse_caps (event, &caps);
+    offered = gst_caps_ref (caps);
+  } else if (GST_EVENT_TYPE (event) == GST_EVENT_EOS
+      && !gst_pad_has_current_caps (pad))
+    offered = gst_pad_peer_query_caps (pad, NULL);
   decoder = offered ? find_decoder (offered) : NULL;
   if (!decoder || gst_caps_can_intersect (offered, taken)
       || priv->told_encoded)
-    return;
+    return GST_PAD_PROBE_OK;
   priv->told_encoded = TRUE;
   GST_ELEMENT_ERROR (self, STREAM, FORMAT,
       ("What comes is %s, which has to be decoded first.",
           gst_structure_get_name (gst_caps_get_structure (offered, 0))),
       ("Put %s before %s.", decoder, GST_OBJECT_NAME (self)));
+  return GST_PAD_PROBE_OK;
 }
 
 static gboolean
@@ -362,8 +368,6 @@ gst_cloth_filter_query (GstBaseTransform * trans, GstPadDirection direction,
   if (answered && GST_QUERY_TYPE (query) == GST_QUERY_LATENCY
       && direction == GST_PAD_SRC)
     gst_cloth_filter_tell_latency (self, query);
-  if (direction == GST_PAD_SINK && GST_PAD_IS_ACTIVE (trans->sinkpad))
-    gst_cloth_filter_look_for_encoded (self, query);
   return answered;
 }
 
@@ -412,4 +416,6 @@ gst_cloth_filter_init (GstClothFilter * self)
 
   gst_base_transform_set_in_place (trans, TRUE);
   gst_base_transform_set_qos_enabled (trans, FALSE);
+  gst_pad_add_probe (GST_BASE_TRANSFORM_SINK_PAD (trans),
+      GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, look_for_encoded, self, NULL);
 }

@@ -122,8 +122,21 @@ expect_message_of_encoded (GstBus * bus, const gchar * text)
   fail_unless (strstr (debug, text) != NULL, "%s", debug);
 }
 
-/* A camera that sends nothing but encoded pictures is told what decodes them; one that can
- * send others as well is not, and sends them. */
+static GstCaps *offered_caps;
+
+static gboolean
+offer_caps (GstPad * pad, GstObject * parent, GstQuery * query)
+{
+  if (GST_QUERY_TYPE (query) != GST_QUERY_CAPS) {
+    return gst_pad_query_default (pad, parent, query);
+  }
+  gst_query_set_caps_result (query, offered_caps);
+  return TRUE;
+}
+
+/* A camera that sends nothing but encoded pictures is told what decodes them, when it has tried to
+ * send them or given up; one that can send others as well is not. That somebody asks changes
+ * nothing. */
 GST_START_TEST (test_encoded)
 {
   static const struct
@@ -139,30 +152,59 @@ GST_START_TEST (test_encoded)
   };
 
   for (guint k = 0; k < 2 * G_N_ELEMENTS (cases); k++) {
-    const guint i = k / 2, asks = k % 2;
+    const guint i = k / 2, sends = k % 2;
     GstElement *element = gst_element_factory_make ("saddledetect", "saddles");
     GstHarness *h = gst_harness_new_with_element (element, "sink", "src");
     g_autoptr (GstPad) pad = NULL;
     g_autoptr (GstBus) bus = gst_bus_new ();
-    g_autoptr (GstCaps) offered = gst_caps_from_string (cases[i].offered);
+    g_autoptr (GstCaps) taken = NULL;
 
+    offered_caps = gst_caps_from_string (cases[i].offered);
+    gst_pad_set_query_function (h->srcpad, offer_caps);
     gst_element_set_bus (element, bus);
     gst_harness_play (h);
+    gst_harness_push_event (h, gst_event_new_stream_start ("camera"));
     pad = gst_element_get_static_pad (element, "sink");
-    if (asks) {
-      g_autoptr (GstCaps) taken = gst_pad_query_caps (pad, offered);
-
-      fail_unless (cases[i].text == NULL || gst_caps_is_empty (taken));
-    } else if (gst_caps_is_fixed (offered)) {
-      fail_if (gst_pad_query_accept_caps (pad, offered));
+    taken = gst_pad_query_caps (pad, offered_caps);
+    fail_unless (cases[i].text == NULL || gst_caps_is_empty (taken));
+    if (gst_caps_is_fixed (offered_caps)) {
+      fail_if (gst_pad_query_accept_caps (pad, offered_caps));
     }
-    expect_message_of_encoded (bus, cases[i].text);
-    gst_caps_unref (gst_pad_query_caps (pad, offered));
-    expect_message_of_encoded (bus, NULL);      /* once is enough */
+    expect_message_of_encoded (bus, NULL);
+    if (sends && gst_caps_is_fixed (offered_caps)) {
+      gst_harness_push_event (h, gst_event_new_caps (offered_caps));
+      expect_message_of_encoded (bus, cases[i].text);
+    }
+    gst_harness_push_event (h, gst_event_new_eos ());
+    /* once is enough */
+    expect_message_of_encoded (bus, sends ? NULL : cases[i].text);
     gst_element_set_bus (element, NULL);
     gst_harness_teardown (h);
     gst_object_unref (element);
+    gst_clear_caps (&offered_caps);
   }
+}
+
+GST_END_TEST;
+
+/* A stream that was good ends well, whatever else its source could send. */
+GST_START_TEST (test_not_encoded)
+{
+  GstElement *element = gst_element_factory_make ("saddledetect", NULL);
+  GstHarness *h = gst_harness_new_with_element (element, "sink", "src");
+  g_autoptr (GstBus) bus = gst_bus_new ();
+  g_autofree gchar *caps = caps_of ("GRAY8", 96, 64);
+
+  offered_caps = gst_caps_from_string ("image/jpeg");
+  gst_harness_set_src_caps_str (h, caps);
+  gst_pad_set_query_function (h->srcpad, offer_caps);
+  gst_element_set_bus (element, bus);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  expect_message_of_encoded (bus, NULL);
+  gst_element_set_bus (element, NULL);
+  gst_harness_teardown (h);
+  gst_object_unref (element);
+  gst_clear_caps (&offered_caps);
 }
 
 GST_END_TEST;
@@ -484,6 +526,7 @@ saddledetect_suite (void)
   suite_add_tcase (suite, tc);
   tcase_add_test (tc, test_formats);
   tcase_add_test (tc, test_encoded);
+  tcase_add_test (tc, test_not_encoded);
   tcase_add_test (tc, test_shared);
   tcase_add_test (tc, test_after_tee);
   tcase_add_test (tc, test_renegotiation);
