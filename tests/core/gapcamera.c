@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/gap/camera/residuals.h"
 #include "gst/gap/camera/solve.h"
 #include "gst/gap/diagnose.h"
 #include "gst/gap/report/report.h"
@@ -510,6 +511,85 @@ test_solved_again (void)
   remove_take (folder);
 }
 
+/* Of several pictures of a frame the nearest in time counts, whichever comes last; what was filmed before and
+ * after the recording is of no frame. */
+static void
+test_nearest_picture (void)
+{
+  static const gdouble late[] = { -0.4, 0.1, 0.45, -0.2, 0.05 };
+  const gdouble offset_s = 3.;
+  g_autoptr (ClothObservations) observations =
+      cloth_observations_new (rig_new (), N);
+  const guint32 vertex = 0;
+  const gdouble px[2] = { 1., 2. }, covariance[3] = { 1., 0., 1. };
+  g_autofree gchar *folder = NULL;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothTake) take = take_new (0., COLUMNS, &folder);
+  g_autoptr (ClothRecording) r = cloth_recording_new (take, &error);
+  g_autoptr (ClothCameraView) view = NULL;
+
+  g_assert_no_error (error);
+  observations->rig->cameras[1].offset_s = offset_s;
+  for (gint f = -3; f < N_FRAMES + 3; f++)
+    for (guint i = 0; i < G_N_ELEMENTS (late); i++) {
+      /* a camera's pictures come in the order of time */
+      static const guint order[] = { 0, 3, 4, 1, 2 };
+
+      if (f == 7)
+        continue;
+      cloth_observations_add (observations, 1, offset_s + (f +
+              late[order[i]]) / FPS, 1, &vertex, px, covariance, &error);
+      g_assert_no_error (error);
+    }
+  view = cloth_camera_view_match (r, observations);
+  for (guint f = 0; f < N_FRAMES; f++) {
+    const ClothObservation *o = *cloth_camera_picture (view, f, 1);
+
+    g_assert_null (*cloth_camera_picture (view, f, 0));
+    if (f == 7)
+      g_assert_null (o);
+    else
+      g_assert_cmpfloat_with_epsilon (o->time_s, offset_s + (f + 0.05) / FPS,
+          1e-12);
+  }
+  remove_take (folder);
+}
+
+/* Where vertices are left out, those that are used are of all columns and rows, however many there are. */
+static void
+test_stride (void)
+{
+  ClothScene scene = { 0 };
+  ClothRecording r = {.scene = &scene,.n = N,.n_frames = 1 };
+  g_autofree gdouble *y = g_new0 (gdouble, 3 * N);
+  const ClothCameraView view = {.recording = &r,.y = y };
+
+  scene.topology = cloth_topology_new_grid (COLUMNS, ROWS, 1.f, 1.f);
+  for (guint v = 0; v < N; v++)
+    y[3 * v] = v;
+  for (guint stride = 1; stride <= 2 * ROWS; stride++) {
+    ClothCameraPoints points;
+    guint columns = 0, rows = 0;
+
+    cloth_camera_points_init (&points, &view, stride);
+    g_assert_cmpuint (points.stride, >=, stride);
+    g_assert_cmpuint (points.stride, <, stride + 3);
+    for (guint i = 0; i < points.n; i++) {
+      const guint v = (guint) points.frames[0][3 * i];
+
+      g_assert_cmpuint (v, ==, i * points.stride);
+      columns |= 1u << v % COLUMNS;
+      rows |= 1u << v / COLUMNS;
+    }
+    /* as many as there are points for, up to all */
+    g_assert_cmpuint (__builtin_popcount (columns), ==, MIN (points.n,
+            COLUMNS));
+    g_assert_cmpuint (__builtin_popcount (rows), >=, MIN (points.n, ROWS) / 2);
+    cloth_camera_points_clear (&points);
+  }
+  cloth_topology_free (scene.topology);
+}
+
 static void
 test_refused (void)
 {
@@ -570,6 +650,8 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/camera/threads", test_threads);
   g_test_add_func ("/gap/camera/one-camera", test_one_camera);
   g_test_add_func ("/gap/camera/solved-again", test_solved_again);
+  g_test_add_func ("/gap/camera/nearest-picture", test_nearest_picture);
+  g_test_add_func ("/gap/camera/stride", test_stride);
   g_test_add_func ("/gap/camera/refused", test_refused);
   return g_test_run ();
 }

@@ -18,6 +18,7 @@ typedef struct
   ClothMotion motion;
 } ClothCameraPoints;
 
+/* @stride: that or a little more, so that vertices of a grid are of all its columns. */
 void cloth_camera_points_init (ClothCameraPoints * p, const ClothCameraView * v,
     guint stride);
 void cloth_camera_points_clear (ClothCameraPoints * p);

@@ -6,24 +6,7 @@
 
 #include <math.h>
 
-static guint
-nearest_frame (const ClothRecording * r, gdouble time_s)
-{
-  guint low = 0, high = r->n_frames - 1;
-
-  while (low < high) {
-    guint middle = (low + high) / 2;
-
-    if (r->times[middle] < time_s)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low > 0 && time_s - r->times[low - 1] < r->times[low] - time_s ?
-      low - 1 : low;
-}
-
-/* A picture belongs to the nearest frame, if that is less than half an interval away. */
+/* A picture belongs to the nearest frame; of several the nearest picture is that of the frame. */
 static void
 place_pictures (ClothCameraView * v)
 {
@@ -31,16 +14,18 @@ place_pictures (ClothCameraView * v)
 
   for (guint i = 0; i < v->observations->list->len; i++) {
     const ClothObservation *observation =
-        &g_array_index (v->observations->list, ClothObservation, i);
-    gdouble time_s =
-        observation->time_s -
+        &g_array_index (v->observations->list, ClothObservation, i), **place;
+    const gdouble late =
         v->observations->rig->cameras[observation->camera].offset_s;
-    guint frame = nearest_frame (r, time_s);
-    gdouble interval = frame > 0 ? r->times[frame] - r->times[frame - 1] :
-        r->times[1] - r->times[0];
+    const gint frame = cloth_recording_find_frame (r, observation->time_s -
+        late);
 
-    if (fabs (r->times[frame] - time_s) < 0.5 * interval)
-      *cloth_camera_picture (v, frame, observation->camera) = observation;
+    if (frame < 0)
+      continue;
+    place = cloth_camera_picture (v, (guint) frame, observation->camera);
+    if (!*place || fabs (observation->time_s - late - r->times[frame]) <
+        fabs ((*place)->time_s - late - r->times[frame]))
+      *place = observation;
   }
 }
 
