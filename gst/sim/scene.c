@@ -8,14 +8,13 @@
 #include <string.h>
 
 #include "gst/mesh/hold.h"
+#include "gst/mesh/seam.h"
 #include "gst/mesh/side.h"
 
 /* A rate for one frame alone, which has none. */
 #define FALLBACK_FPS 30.
 /* Nothing that holds a cloth moves faster than sound, m/s; a path that does is broken. */
 #define MAX_CLAMP_SPEED 340.
-/* Two lines of a seam may differ by this part of the longer one, as cut cloth does. */
-#define SEAM_EASE 0.02
 
 /* @topology: (transfer full): the cloth; its uv are metres on the flat cloth
  * @fps: frames a second
@@ -126,20 +125,6 @@ cloth_scene_free (ClothScene * scene)
 
 /* ---- from a take ---- */
 
-static gdouble
-line_length (const ClothTopology * topology, const guint * line, guint n)
-{
-  gdouble length = 0;
-
-  for (guint i = 1; i < n; i++) {
-    const gfloat *a = topology->uv + 2 * (gsize) line[i - 1];
-    const gfloat *b = topology->uv + 2 * (gsize) line[i];
-
-    length += hypot ((gdouble) b[0] - a[0], (gdouble) b[1] - a[1]);
-  }
-  return length;
-}
-
 /* @scene: a scene
  * @line: two lines of vertices
  * @error: #ClothFileError
@@ -155,21 +140,18 @@ cloth_scene_sew (ClothScene * scene, const ClothSeamLine * line,
 {
   gdouble lengths[2];
 
-  for (guint side = 0; side < 2; side++) {
+  for (guint side = 0; side < 2; side++)
     for (guint i = 0; i < line->n_vertices; i++)
       if (line->lines[side][i] >= scene->topology->n_vertices)
         return cloth_file_invalid (error,
             "vertex %u of a seam is not in the mesh (there are %u)",
             line->lines[side][i], scene->topology->n_vertices);
-    lengths[side] =
-        line_length (scene->topology, line->lines[side], line->n_vertices);
-  }
-  if (fabs (lengths[0] - lengths[1]) > SEAM_EASE * MAX (lengths[0], lengths[1]))
+  if (!cloth_seam_fits (scene->topology, line, lengths))
     return cloth_file_invalid (error,
         "the lines of the seam from vertex %u and from "
         "vertex %u are %g m and %g m long on the flat cloth; they may differ "
         "by %g%%", line->lines[0][0], line->lines[1][0], lengths[0], lengths[1],
-        100 * SEAM_EASE);
+        100 * CLOTH_SEAM_EASE);
   for (guint i = 0; i < line->n_vertices; i++) {
     const ClothSeam seam = { line->lines[0][i], line->lines[1][i] };
 

@@ -193,6 +193,16 @@ take_frame (ClothImportSource * source, guint frame, guint n_frames,
   return TRUE;
 }
 
+/* Where the uv of an OBJ file have seams, the mesh in parts. */
+static gboolean
+split_obj (ClothImportSource * source, const ClothObj * obj, GError ** error)
+{
+  if (!obj->corner_uv)
+    return TRUE;
+  source->split = cloth_split_new (obj->topology, obj->corner_uv, error);
+  return source->split != NULL;
+}
+
 static gboolean
 read_obj_files (ClothImportSource * source, const GArray * files,
     GError ** error)
@@ -208,6 +218,8 @@ read_obj_files (ClothImportSource * source, const GArray * files,
     if (i == 0) {
       source->has_uv = obj->has_uv;
       source->topology = cloth_topology_copy (obj->topology);
+      if (!split_obj (source, obj, error))
+        return FALSE;
     }
     if (!check_same (source->topology, obj->topology->n_vertices,
             obj->topology->n_faces, obj->topology->faces, path, error) ||
@@ -357,7 +369,8 @@ read_obj_pc2 (ClothImportSource * source, const gchar * path, GError ** error)
   if (!obj)
     return FALSE;
   source->has_uv = obj->has_uv;
-  return read_sequence (source, obj_path, "OBJ with a point cache", error);
+  return split_obj (source, obj, error) &&
+      read_sequence (source, obj_path, "OBJ with a point cache", error);
 }
 
 /* @source: empty; to be cleared even after an error
@@ -397,4 +410,5 @@ cloth_import_source_clear (ClothImportSource * source)
 {
   g_clear_pointer (&source->markers, cloth_markers_free);
   g_clear_pointer (&source->topology, cloth_topology_free);
+  g_clear_pointer (&source->split, cloth_split_free);
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gst/math/statistics.h"
+#include "gst/mesh/seam.h"
 #include "gst/take/import-source.h"
 #include "gst/take/sequence.h"
 #include "gst/take/summary.h"
@@ -28,8 +29,11 @@
 #define CLAMP_REACH_M 0.05
 /* Share of places at 0, 0, 0 that is spoken of. */
 #define ODD_ZEROS 0.001
+/* Pairs of vertices in the seams of a mesh, which take.json has room for. */
+#define MOST_SEWN 50000u
 
-/* @vertices: of each vertex its marker, −1 when none shows it
+/* @split: (nullable): the mesh in parts, where vertices have several uv
+ * @vertices: of each vertex its marker, −1 when none shows it
  * @names: of what the markers are told by, for people
  * @map, @sign: which of the source's axes becomes x, y and z
  * @times: of each frame, from 0 on
@@ -43,6 +47,7 @@ typedef struct
   ClothImportSource source;
   ClothMarkers *log;            /* of the clamps' own file */
   ClothTopology *topology;
+  ClothSplit *split;
   gint *vertices;
   guint map[3];
   gdouble sign[3];
@@ -61,6 +66,7 @@ free_import (Import * self)
   cloth_import_source_clear (&self->source);
   cloth_markers_free (self->log);
   cloth_topology_free (self->topology);
+  cloth_split_free (self->split);
   g_free (self->vertices);
   g_free (self->times);
   g_free (self->positions);
@@ -216,6 +222,9 @@ load_mesh (Import * self, GError ** error)
     return cloth_file_invalid (error,
         "%s has no faces with uv (vt): where each vertex lies "
         "on the flat cloth, in metres", self->import->mesh);
+  if (obj->corner_uv && !(self->split = cloth_split_new (obj->topology,
+              obj->corner_uv, error)))
+    return FALSE;
   self->topology = g_steal_pointer (&obj->topology);
   return TRUE;
 }
@@ -248,6 +257,7 @@ find_mesh (Import * self, GError ** error)
   if (self->source.topology && self->source.has_uv
       && self->source.topology->n_faces > 0) {
     self->topology = cloth_topology_copy (self->source.topology);
+    self->split = g_steal_pointer (&self->source.split);
     return TRUE;
   }
   return cloth_file_invalid (error,
@@ -359,6 +369,48 @@ place_vertices (Import * self, GHashTable * apart, GError ** error)
         (const gchar *)
         markers->names->pdata[self->vertices[0]], n - 1, (const gchar *)
         markers->names->pdata[self->vertices[n - 1]]);
+  return TRUE;
+}
+
+/* A vertex with several uv is there once for each, all at the place of its marker, and sewn
+ * together. */
+static gboolean
+part_at_seams (Import * self, GError ** error)
+{
+  const ClothSplit *split = self->split;
+  const guint n = self->topology->n_vertices;
+  gsize n_sewn = 0;
+
+  if (!split)
+    return TRUE;
+  for (guint i = 0; i < split->seams->len; i++)
+    n_sewn += g_array_index (split->seams, ClothSeamLine, i).n_vertices;
+  if (split->seams->len > CLOTH_MAX_SEAMS || n_sewn > MOST_SEWN)
+    return cloth_file_invalid (error, "the uv of the mesh have %u seams of %"
+        G_GSIZE_FORMAT " pairs of vertices; %u and %u are accepted: unwrap it "
+        "in fewer pieces", split->seams->len, n_sewn, CLOTH_MAX_SEAMS,
+        MOST_SEWN);
+  cloth_topology_free (self->topology);
+  self->topology = cloth_topology_copy (split->topology);
+  self->vertices = g_renew (gint, self->vertices, self->topology->n_vertices);
+  for (guint i = n; i < self->topology->n_vertices; i++)
+    self->vertices[i] = self->vertices[split->sources[i]];
+  cloth_summary_add (self->told, "seams", "%u, where the mesh gives vertices "
+      "several uv: it is parted there and sewn, with %u vertices more",
+      split->seams->len, self->topology->n_vertices - n);
+  for (guint i = 0; i < split->seams->len; i++) {
+    const ClothSeamLine *line = &g_array_index (split->seams, ClothSeamLine, i);
+    gdouble lengths[2];
+
+    if (!cloth_seam_fits (self->topology, line, lengths))
+      cloth_summary_add (self->notes, "note",
+          "the seam from vertex %u to %u is "
+          "%.4g m long there and %.4g m from %u to %u: a simulation takes no "
+          "seam whose lines differ by more than %g %%", line->lines[0][0],
+          line->lines[0][line->n_vertices - 1], lengths[0], lengths[1],
+          line->lines[1][0], line->lines[1][line->n_vertices - 1],
+          100 * CLOTH_SEAM_EASE);
+  }
   return TRUE;
 }
 
@@ -828,6 +880,10 @@ write_take (Import * self, const gchar * folder, GError ** error)
   g_autofree gfloat *clamps = g_new (gfloat, 3 * (gsize) self->held->len);
 
   cloth_take_info_set_mesh (info, self->topology);
+  if (self->split) {
+    g_array_unref (info->seams);
+    info->seams = g_array_ref (self->split->seams);
+  }
   for (guint i = 0; i < self->held->len; i++) {
     ClothHeld held = { g_array_index (self->held, guint, i), -INFINITY,
       INFINITY
@@ -876,8 +932,9 @@ understand (Import * self, GError ** error)
   choose_unit (self);
   apart = find_apart (self);
   return find_times (self, error) && find_mesh (self, error) &&
-      place_vertices (self, apart, error) && place_positions (self, error) &&
-      check_size (self, error) && add_clamps (self, error);
+      place_vertices (self, apart, error) && part_at_seams (self, error) &&
+      place_positions (self, error) && check_size (self, error)
+      && add_clamps (self, error);
 }
 
 static gchar *

@@ -8,8 +8,8 @@
 
 #include "gst/file/json.h"
 #include "gst/math/vec3.h"
+#include "gst/mesh/seam.h"
 
-#define MAX_SEAMS 1024
 /* Share of its extent by which the uv of a grid may be off. */
 #define GRID_ROUNDING 1e-6
 
@@ -125,7 +125,8 @@ parse_seams (JsonObject * root, ClothTakeInfo * info, GError ** error)
 {
   static const gchar *const keys[] = { "lines", NULL };
   gboolean bad;
-  JsonArray *list = cloth_json_get_list (&take_json, root, "seams", MAX_SEAMS,
+  JsonArray *list =
+      cloth_json_get_list (&take_json, root, "seams", CLOTH_MAX_SEAMS,
       &bad, error);
 
   if (bad)
@@ -308,15 +309,6 @@ parse_root (JsonObject * root, ClothTakeInfo * info, GError ** error)
       parse_seams (root, info, error);
 }
 
-static void
-seam_clear (gpointer data)
-{
-  ClothSeamLine *line = data;
-
-  g_free (line->lines[0]);
-  g_free (line->lines[1]);
-}
-
 /* @name: (nullable): name of the take
  *
  * Returns: (transfer full): a take's description with every default
@@ -329,8 +321,7 @@ cloth_take_info_new (const gchar * name)
   info->name = g_strdup (name);
   info->held = g_array_new (FALSE, TRUE, sizeof (ClothHeld));
   info->obstacles = cloth_obstacles_new ();
-  info->seams = g_array_new (FALSE, TRUE, sizeof (ClothSeamLine));
-  g_array_set_clear_func (info->seams, seam_clear);
+  info->seams = cloth_seams_new ();
   info->noise_sigma_m = NAN;
   info->gravity[2] = -9.81;
   return info;

@@ -8,6 +8,9 @@
 
 G_BEGIN_DECLS
 
+/* Limit on untrusted input. */
+#define CLOTH_MAX_SEAMS 1024
+
 /* @vertex: a vertex that a clamp holds
  * @from_s: held from here on, seconds; −∞ when from the beginning
  * @until_s: let go here, seconds; ∞ when held to the end

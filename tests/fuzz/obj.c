@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "gst/mesh/formats/obj.h"
+#include "gst/mesh/seam.h"
 
 int
 LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
@@ -19,5 +20,11 @@ LLVMFuzzerTestOneInput (const guint8 * data, gsize size)
   obj = cloth_obj_parse (text, size, NULL);
   if (obj)
     g_assert_true (cloth_topology_check (obj->topology, NULL));
+  if (obj && obj->corner_uv) {
+    g_autoptr (ClothSplit) split = cloth_split_new (obj->topology,
+        obj->corner_uv, NULL);
+
+    g_assert_true (!split || cloth_topology_check (split->topology, NULL));
+  }
   return 0;
 }

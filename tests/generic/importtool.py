@@ -364,6 +364,85 @@ def meshes():
     bad('no rate', 'a.npy', says=['--rate'])
 
 
+def parted_text(frame, panel, shrink=1.):
+    """The sheet in panels, each of which lies a metre further on the flat cloth."""
+    rows = ['v %.9g %.9g %.9g' % tuple(p) for p in numpy.nan_to_num(positions[frame])]
+    uv, faces = [], []
+    for row in range(8):
+        for column in range(8):
+            corners = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
+            number = panel(row, column)
+            its = [(number + 0.05 * c, 0.05 * r * (shrink if number else 1)) for r, c in corners]
+            rows += ['vt %.9g %.9g' % x for x in its]
+            faces.append('f ' + ' '.join('%d/%d' % (9 * r + c + 1, 1 + len(uv) + k)
+                                         for k, (r, c) in enumerate(corners)))
+            uv += its
+    return '\n'.join(rows + faces) + '\n', numpy.array(uv)
+
+
+def seams():
+    """Where a vertex has several uv the take has it several times, sewn together."""
+    sources = [9 * (row + r) + column + c for row in range(8) for column in range(8)
+               for r, c in ((0, 0), (0, 1), (1, 1), (1, 0))]
+    for name, panel, n_lines, more in (
+            ('two panels', lambda row, column: int(column > 3), 1, ()),
+            ('four panels', lambda row, column: 2 * (row > 3) + (column > 3), 4, ('--clamp', '40')),
+            ('a pocket', lambda row, column: int(2 < row < 5 and 2 < column < 5), 2, ()),
+            ('every face by itself', lambda row, column: 8 * row + column, 112, ())):
+        for i in range(3):
+            text, uv = parted_text(i, panel)
+            write('seam_%d.obj' % i, text)
+        numpy.save('seam.npy', positions[:3])
+        for source in ['seam_0.obj'], ['seam.npy', '--mesh', 'seam_0.obj']:
+            done = run('import', *source, '--rate', '50', '--output', 'seam.take', '--overwrite', *more)
+            said = re.search(r'^seams +(\d+), .* (\d+) vertices more$', done.stdout, re.M)
+            if done.returncode or not said or 'note        the seam' in done.stdout:
+                expect(False, '%s: %s%s' % (name, done.stdout, done.stderr))
+                continue
+            with open('seam.take/take.json', encoding='utf-8') as file:
+                lines = [item['lines'] for item in json.load(file)['seams']]
+            with open('seam.take/mesh.obj', encoding='utf-8') as file:
+                rows = file.read().splitlines()
+            flat = numpy.array([row.split()[1:] for row in rows if row.startswith('vt')], dtype=float)
+            corners = [int(word.split('/')[0]) - 1 for row in rows if row.startswith('f ')
+                       for word in row.split()[1:]]
+            expect(abs(flat[corners] - uv).max() < 1e-5, name + ': every corner lies where it should')
+            places = numpy.load('seam.take/positions.npy')
+            truth = positions[:3] if source[0] == 'seam.npy' else numpy.nan_to_num(positions[:3])
+            expect(numpy.allclose(places[:, corners], truth[:, sources], atol=2e-7, equal_nan=True)
+                   and len(flat) == 81 + int(said.group(2)), name + ': and is where its vertex is')
+            same = list(range(len(flat)))
+            for line in lines:
+                for a, b in zip(*line):
+                    same = [same[a] if x == same[b] else x for x in same]
+                expect(len(line[0]) == len(line[1]) and all(len(set(side)) == len(side) for side in line),
+                       name + ': a line of vertices')
+            expect(len(set(same)) == 81 and len({(same[c], s) for c, s in zip(corners, sources)}) == 81,
+                   name + ': each vertex is one again')
+            expect(len(lines) == int(said.group(1)) == n_lines, '%s: %d seams' % (name, len(lines)))
+    gap = os.path.join(os.path.dirname(tool), 'gst-cloth-gap-1.0')
+    model = os.path.join(os.path.dirname(page), '../pipelines/model-knit.json')
+    for shrink, code in (0.99, 0), (0.9, 1):
+        write('seam.obj', parted_text(0, lambda row, column: int(column > 3), shrink)[0])
+        done = run('import', 'seam.npy', '--rate', '50', '--mesh', 'seam.obj', '--output', 'seam.take',
+                   '--overwrite')
+        expect(done.returncode == 0 and ('differ by more than 2 %' in done.stdout) == code,
+               'one line shorter by %g: %s' % (1 - shrink, done.stderr))
+        done = subprocess.run([gap, 'simulate', model, '--scene', 'seam.take', '--output', 'sewn.take'],
+                              capture_output=True, text=True, timeout=120, check=False)
+        expect(done.returncode == code and ('of the seam' in done.stderr) == code,
+               'a simulation of it: ' + done.stderr[-200:])
+    rows = []
+    for i in range(3000):
+        rows += ['v %d 0 0' % i, 'v %d 1 0' % i, 'v %d 0 1' % i, 'v %d 1 1' % i]
+        rows += ['vt %d 0' % i, 'vt %d 1' % i, 'vt %d 2' % i, 'vt %d 3' % i]
+        a = 4 * i + 1
+        rows += ['f %d/%d %d/%d %d/%d' % (a, a, a + 1, a + 1, a + 2, a + 2),
+                 'f %d/%d %d/%d %d/%d' % (a + 1, a + 1, a + 3, a + 3, a + 2, a)]
+    bad('too many seams', write('many.obj', '\n'.join(rows) + '\n'), grid=[],
+        says=['3000 seams of 6000 pairs', 'fewer pieces'])
+
+
 def c3d_bytes(integer, labels=True, rate=50., frames=60):
     """A C3D file, written from the format's description."""
     def parameter(name, group, kind, dimensions, payload):
@@ -454,6 +533,7 @@ with tempfile.TemporaryDirectory(prefix='cloth-import-') as scratch:
     refused()
     held_by_clamps()
     meshes()
+    seams()
     c3d()
     shown()
     os.chdir('/')

@@ -252,6 +252,23 @@ assign_uv (Parser * parser, ClothObj * obj, GError ** error)
   return TRUE;
 }
 
+/* The uv of every corner; of those without one, their vertex'. */
+static void
+keep_corner_uv (const Parser * parser, ClothObj * obj)
+{
+  const guint32 *corners = (const guint32 *) parser->face_uv->data;
+  const gfloat *given = (const gfloat *) parser->uv->data;
+  const ClothTopology *topology = obj->topology;
+  const gsize n = 4 * (gsize) topology->n_faces;
+
+  obj->corner_uv = g_new0 (gfloat, 2 * n);
+  for (gsize i = 0; i < n; i++)
+    if (topology->faces[i] != CLOTH_NO_VERTEX)
+      memcpy (obj->corner_uv + 2 * i, corners[i] == NO_UV ?
+          topology->uv + 2 * topology->faces[i] : given + 2 * corners[i],
+          2 * sizeof *given);
+}
+
 static ClothObj *
 parse (Parser * parser, GError ** error)
 {
@@ -270,6 +287,8 @@ parse (Parser * parser, GError ** error)
   if (!cloth_topology_check (obj->topology, error) ||
       !assign_uv (parser, obj, error))
     return NULL;
+  if (obj->n_seam_vertices > 0)
+    keep_corner_uv (parser, obj);
   obj->positions = g_memdup2 (parser->positions->data,
       parser->positions->len * sizeof (gfloat));
   obj->fps = parser->note.fps;
@@ -342,6 +361,7 @@ cloth_obj_free (ClothObj * obj)
     return;
   cloth_topology_free (obj->topology);
   g_free (obj->positions);
+  g_free (obj->corner_uv);
   g_free (obj);
 }
 

@@ -12,6 +12,7 @@ G_BEGIN_DECLS
  * @positions: 3 numbers a vertex, as they stand in the file
  * @has_uv: whether the file gives uv
  * @n_seam_vertices: vertices that faces give different uv; the first one is kept
+ * @corner_uv: (nullable): where there are such, 2 numbers for each of the 4 corners of each face
  * @fps: from the comment this library writes, else 0
  *
  * What an OBJ file holds. Vertices keep the file's order, which a point cache
@@ -22,6 +23,7 @@ typedef struct {
   gfloat *positions;
   gboolean has_uv;
   guint n_seam_vertices;
+  gfloat *corner_uv;
   gdouble fps;
 } ClothObj;
 

@@ -14,9 +14,8 @@
 
 #include "gst/math/delaunay.h"
 #include "gst/mesh/garment/panel.h"
+#include "gst/mesh/seam.h"
 
-/* By how much the lengths of the edges of a seam may differ, as in a simulation's scene. */
-#define SEAM_EASE 0.02
 /* Least distance of a dot's vertex from the border, pitches. */
 #define CLEARANCE 0.499
 /* Least area of a triangle, squares of the pitch. One with less has its three vertices on
@@ -42,15 +41,6 @@ static void
 panel_clear (gpointer data)
 {
   g_free (((ClothPanel *) data)->name);
-}
-
-static void
-seam_clear (gpointer data)
-{
-  ClothSeamLine *line = data;
-
-  g_free (line->lines[0]);
-  g_free (line->lines[1]);
 }
 
 static ClothDrawnPanel *
@@ -140,7 +130,7 @@ count_pieces (Builder * self, GArray * seam_edges, GError ** error)
     nb = &g_array_index (self->counts, guint, edge_number (self, pair[1].panel,
             pair[1].edge));
     if (fabs (a->length_m - b->length_m)
-        > SEAM_EASE * fmax (a->length_m, b->length_m))
+        > CLOTH_SEAM_EASE * fmax (a->length_m, b->length_m))
       return cloth_file_invalid (error,
           "the two sides of seam “%s” don't match: edge "
           "“%s” of panel “%s” is %.1f mm long and has %u vertices, edge “%s” "
@@ -148,7 +138,7 @@ count_pieces (Builder * self, GArray * seam_edges, GError ** error)
           name, a->name, get_panel (self, pair[0].panel)->name,
           1000 * a->length_m, *na + 1, b->name, get_panel (self,
               pair[1].panel)->name, 1000 * b->length_m, *nb + 1,
-          100 * SEAM_EASE);
+          100 * CLOTH_SEAM_EASE);
     *na = *nb = MAX (*na, *nb);
   }
   return TRUE;
@@ -554,8 +544,7 @@ cloth_garment_new (void)
   garment->panels = g_array_new (FALSE, TRUE, sizeof (ClothPanel));
   g_array_set_clear_func (garment->panels, panel_clear);
   garment->seam_names = g_ptr_array_new_with_free_func (g_free);
-  garment->seams = g_array_new (FALSE, TRUE, sizeof (ClothSeamLine));
-  g_array_set_clear_func (garment->seams, seam_clear);
+  garment->seams = cloth_seams_new ();
   return garment;
 }
 
