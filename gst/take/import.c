@@ -18,9 +18,9 @@
 /* Neighbours further apart than on the flat cloth, in the median: not this cloth. */
 #define MOST_STRETCH 2.0
 #define LEAST_STRETCH 0.2
-/* Beyond these a line says so. */
-#define ODD_STRETCH 1.1
-#define ODD_SHRINKAGE 0.8
+/* Within these a unit, or columns and rows, would be right. */
+#define FAIR_STRETCH 1.1
+#define FAIR_SHRINKAGE 0.8
 /* Frames that are looked at for it. */
 #define LOOKS 32u
 /* Where a clamp's place isn't known for no longer, it went straight on. */
@@ -454,8 +454,7 @@ place_positions (Import * self, GError ** error)
 
 /* Of some frames the median; NaN when no neighbours are seen together. */
 static gdouble
-stretch_of (const Import * self, const ClothTopology * topology,
-    ClothSides sides)
+stretch_of (const Import * self, const ClothTopology * topology)
 {
   const guint n_frames = self->source.markers->n_frames;
   const guint step = (n_frames + LOOKS - 1) / LOOKS;
@@ -465,7 +464,7 @@ stretch_of (const Import * self, const ClothTopology * topology,
 
   for (guint i = 0; i < n_frames && n < LOOKS; i += step) {
     looks[n] = cloth_summary_stretch (topology, self->positions +
-        3 * (gsize) i * topology->n_vertices, sides, scratch);
+        3 * (gsize) i * topology->n_vertices, CLOTH_SIDES_ALL, scratch);
     n += isfinite (looks[n]);
   }
   return n > 0 ? cloth_median (looks, n) : NAN;
@@ -483,8 +482,8 @@ fits_turned (const Import * self)
     return FALSE;
   turned = cloth_topology_new_grid (import->rows, import->columns,
       (gfloat) import->height_m, (gfloat) import->width_m);
-  stretch = stretch_of (self, turned, CLOTH_SIDES_ALL);
-  return stretch > LEAST_STRETCH && stretch < ODD_STRETCH;
+  stretch = stretch_of (self, turned);
+  return stretch > LEAST_STRETCH && stretch < FAIR_STRETCH;
 }
 
 /* A unit that would make the cloth as large as it is. */
@@ -494,46 +493,25 @@ better_unit (gdouble unit_m, gdouble stretch)
   for (guint i = 0; i < G_N_ELEMENTS (units); i++) {
     const gdouble then = stretch / unit_m * units[i].unit_m;
 
-    if (then > ODD_SHRINKAGE && then < ODD_STRETCH)
+    if (then > FAIR_SHRINKAGE && then < FAIR_STRETCH)
       return units[i].name;
   }
   return NULL;
 }
 
-/* One of both directions may be wrong alone. */
-static void
-note_odd_sizes (Import * self)
-{
-  const gboolean grid = self->import->columns > 0;
-
-  for (ClothSides sides = CLOTH_SIDES_U; sides <= CLOTH_SIDES_V; sides++) {
-    const gdouble stretch = stretch_of (self, self->topology, sides);
-    const gchar *size = sides == CLOTH_SIDES_U ? "--width" : "--height";
-
-    if (stretch > ODD_STRETCH || stretch < ODD_SHRINKAGE)
-      cloth_summary_add (self->notes, "note",
-          "along %s neighbours are %.2f times "
-          "as far apart as on the flat cloth: see that %s and the order of the "
-          "vertices are right", cloth_summary_name_sides (sides, grid), stretch,
-          grid ? size : "the uv of the mesh");
-  }
-}
-
 static gboolean
 check_size (Import * self, GError ** error)
 {
-  const gdouble stretch = stretch_of (self, self->topology, CLOTH_SIDES_ALL);
+  const gdouble stretch = stretch_of (self, self->topology);
   const gchar *unit;
 
   if (isnan (stretch))
     return TRUE;
   if (stretch > LEAST_STRETCH && stretch < MOST_STRETCH) {
-    if (fits_turned (self) && stretch > ODD_STRETCH)
+    if (fits_turned (self) && stretch > FAIR_STRETCH)
       cloth_summary_add (self->notes, "note", "%u columns and %u rows, with "
           "width and height exchanged, would fit the places better",
           self->import->rows, self->import->columns);
-    else
-      note_odd_sizes (self);
     return TRUE;
   }
   unit = better_unit (self->unit_m, stretch);
@@ -838,33 +816,6 @@ find_apart (const Import * self)
   return apart;
 }
 
-/* Cloth hangs below what holds it. */
-static void
-check_up (Import * self)
-{
-  const guint n_frames = self->source.markers->n_frames;
-  const gsize n = self->topology->n_vertices;
-  gdouble below[3] = { 0 }, count = 0, most = 0;
-
-  for (gsize i = 0; i < n_frames; i++)
-    for (gsize k = 0; k < n; k++) {
-      const gfloat *p = self->positions + 3 * (i * n + k);
-
-      if (isnan (p[0]))
-        continue;
-      count++;
-      for (guint axis = 0; axis < 3; axis++)
-        for (guint c = 0; c < self->paths->len; c++)
-          below[axis] += (((const gfloat *) self->paths->pdata[c])[3 * i +
-                  axis] - p[axis]) / self->paths->len;
-    }
-  for (guint axis = 0; axis < 3; axis++)
-    most = MAX (most, fabs (below[axis]) / count);
-  if (self->paths->len > 0 && below[2] / count < most / 2)
-    cloth_summary_add (self->notes, "note", "the cloth does not hang below its "
-        "clamps: see that z is up (--axes)");
-}
-
 /* ---- the take ---- */
 
 static gboolean
@@ -945,7 +896,6 @@ run (Import * self, const gchar * folder, GError ** error)
 
   if (!understand (self, error))
     return NULL;
-  check_up (self);
   if (!write_take (self, folder, error) ||
       !(take = cloth_take_open (folder, error)) ||
       !(summary = cloth_take_summarise (take, error)))

@@ -10,6 +10,10 @@
 
 /* Frame intervals that differ by less count as even. */
 #define EVEN 0.01
+/* Beyond these, in the median over the frames, a note says so: cloth doesn't shrink, and folds make
+ * chords of edges by less. */
+#define ODD_STRETCH 1.05
+#define ODD_SHRINKAGE 0.95
 
 static const ClothSides SIDES[2] = { CLOTH_SIDES_U, CLOTH_SIDES_V };
 
@@ -23,6 +27,7 @@ static const ClothSides SIDES[2] = { CLOTH_SIDES_U, CLOTH_SIDES_V };
  * @lengths: of each clamp's path
  * @open: frames in which nobody logged its place
  * @distances: (element-type GArray): of each clamp, how far from its vertex it was
+ * @below: by how much the vertices that were seen are below what holds them, added up
  */
 typedef struct
 {
@@ -34,6 +39,7 @@ typedef struct
   gdouble *lengths;
   guint *open;
   GPtrArray *distances;
+  gdouble below[3];
 } Pass;
 
 /* Adds a line to a table: a label, and what @format says. */
@@ -153,6 +159,29 @@ look_at_clamps (Pass * pass, const ClothTakeInfo * info, gdouble time,
       3 * (gsize) info->held->len * sizeof *pass->before);
 }
 
+/* Adds how far the vertices are from the middle of the clamps that hold, along each axis. */
+static void
+look_below (Pass * pass, const ClothTakeInfo * info, gdouble time,
+    const gfloat * positions, gsize n_vertices)
+{
+  gdouble middle[3] = { 0 };
+  guint n = 0;
+
+  for (guint i = 0; i < info->held->len; i++) {
+    const gfloat *clamp = pass->clamps + 3 * i;
+
+    if (isnan (clamp[0])
+        || !cloth_held_holds (&g_array_index (info->held, ClothHeld, i), time))
+      continue;
+    n++;
+    for (guint k = 0; k < 3; k++)
+      middle[k] += ((gdouble) clamp[k] - middle[k]) / n;
+  }
+  for (gsize i = 0; n > 0 && i < n_vertices; i++)
+    for (guint k = 0; k < 3 && !isnan (positions[3 * i]); k++)
+      pass->below[k] += middle[k] - positions[3 * i + k];
+}
+
 static gboolean
 look (ClothTake * take, Pass * pass, GError ** error)
 {
@@ -183,6 +212,7 @@ look (ClothTake * take, Pass * pass, GError ** error)
       memcpy (pass->before, pass->clamps,
           3 * (gsize) info->held->len * sizeof *pass->before);
     look_at_clamps (pass, info, cloth_take_get_time (take, i), positions);
+    look_below (pass, info, cloth_take_get_time (take, i), positions, n);
   }
   return TRUE;
 }
@@ -265,6 +295,34 @@ add_seen (GString * table, const ClothTake * take, const Pass * pass)
           cloth_median ((gdouble *) (gpointer) stretches->data,
               stretches->len));
   }
+  if (pass->stretches[0]->len + pass->stretches[1]->len == 0)
+    cloth_summary_add (table, "stretch",
+        "not known: no neighbours were seen together");
+}
+
+/* What is wrong, more likely than not. */
+static void
+add_notes (GString * table, const ClothTake * take, const Pass * pass)
+{
+  const gboolean grid = !cloth_take_get_info (take)->mesh;
+
+  for (guint k = 0; k < 2; k++) {
+    GArray *stretches = pass->stretches[k];
+    const gdouble stretch = cloth_median ((gdouble *) (gpointer)
+        stretches->data, stretches->len);
+
+    /* NaN is neither */
+    if (stretch > ODD_STRETCH || stretch < ODD_SHRINKAGE)
+      cloth_summary_add (table, "note", "along %s neighbours are %.2f times "
+          "as far apart as on the flat cloth: see that %s, the unit of the "
+          "places (of filmed cloth that of the rig) and the order of the vertices "
+          "are right", cloth_summary_name_sides (SIDES[k], grid), stretch,
+          !grid ? "the uv of the mesh" : k == 0 ? "its width" : "its height");
+  }
+  if (pass->below[2] < MAX (fabs (pass->below[0]), MAX (fabs (pass->below[1]),
+              fabs (pass->below[2]))) / 2)
+    cloth_summary_add (table, "note", "the cloth does not hang below its "
+        "clamps: see that z is up (--axes of an import)");
 }
 
 static void
@@ -308,7 +366,7 @@ free_distances (gpointer data)
  * Reads every frame once.
  *
  * Returns: (transfer full): a table of frames, rate, vertices, extent, what was seen and what
- *   clamps hold, or %NULL
+ *   clamps hold, and of what is likely wrong, or %NULL
  */
 gchar *
 cloth_take_summarise (ClothTake * take, GError ** error)
@@ -339,5 +397,6 @@ cloth_take_summarise (ClothTake * take, GError ** error)
   add_mesh (table, take);
   add_seen (table, take, &pass);
   add_clamps (table, take, &pass);
+  add_notes (table, take, &pass);
   return g_string_free (g_steal_pointer (&table), FALSE);
 }

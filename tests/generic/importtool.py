@@ -11,6 +11,7 @@ SPDX-License-Identifier: LGPL-2.1-or-later
 import json
 import os
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -214,7 +215,7 @@ def told():
 
 def refused():
     good('a width twice as large', 'long.csv', grid=GRID[:4] + ['--width', '0.8m', '--height', '40cm'],
-         says=['note        along rows neighbours are 0.50 times', 'see that --width'])
+         says=['note        along rows neighbours are 0.50 times', 'see that its width'])
     bad('millimetres as metres', write('b.csv', long_table(scale=1000, header='t,id,x,y,z')),
         says=['--units mm'])
     bad('metres as millimetres', 'long.csv', '--units', 'mm', says=['--units m'])
@@ -443,6 +444,33 @@ def seams():
         says=['3000 seams of 6000 pairs', 'fewer pieces'])
 
 
+def informed():
+    """What info notes of a take, whoever made it."""
+    def info(width=0.4, places=positions, held=clamps):
+        shutil.rmtree('odd.take', ignore_errors=True)
+        shutil.copytree(drag, 'odd.take', copy_function=shutil.copyfile)
+        with open('odd.take/take.json', encoding='utf-8') as file:
+            text = json.load(file)
+        text['grid']['width_m'] = width
+        with open('odd.take/take.json', 'w', encoding='utf-8') as file:
+            json.dump(text, file)
+        numpy.save('odd.take/positions.npy', places.astype('f4'))
+        numpy.save('odd.take/clamps.npy', held.astype('f4'))
+        return run('info', 'odd.take').stdout
+    expect('note' not in info() and 'not known' not in info(), 'nothing is odd')
+    for width, ratio in (0.44, '0.91'), (0.36, '1.11'):
+        told = info(width)
+        expect('note        along rows neighbours are %s times' % ratio in told and 'note        along columns'
+               not in told and told.count('note') == 1, 'a print of %g m: %s' % (width, told))
+    odd = positions.copy()
+    odd[:, (numpy.arange(81) // 9 + numpy.arange(81) % 9) % 2 == 1] = numpy.nan
+    told = info(places=odd)
+    expect('stretch     not known: no neighbours were seen together' in told and 'note' not in told,
+           'every other vertex: ' + told)
+    told = info(places=positions * [1, 1, -1], held=clamps * [1, 1, -1])
+    expect('note        the cloth does not hang below its clamps' in told, 'upside down: ' + told)
+
+
 def c3d_bytes(integer, labels=True, rate=50., frames=60):
     """A C3D file, written from the format's description."""
     def parameter(name, group, kind, dimensions, payload):
@@ -534,6 +562,7 @@ with tempfile.TemporaryDirectory(prefix='cloth-import-') as scratch:
     held_by_clamps()
     meshes()
     seams()
+    informed()
     c3d()
     shown()
     os.chdir('/')
