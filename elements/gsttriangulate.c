@@ -48,6 +48,7 @@
 #include "elements/gstclothproperties.h"
 #include "elements/gsttriangulateboard.h"
 #include "elements/gsttriangulatepad.h"
+#include "gst/math/statistics.h"
 #include "gst/rig/merge.h"
 #include "gst/rig/reconstruct.h"
 #include "gst/rig/rigfile.h"
@@ -60,6 +61,11 @@ GST_DEBUG_CATEGORY_STATIC (triangulate_debug);
 #define CHECKED_SETS 25
 /* A film of fewer sets is judged at its end, by no fewer vertices than this. */
 #define CHECKED_VERTICES 20
+#define CONTRADICTION_HINT \
+    "See that each pad has its own camera, that the films start together (a camera " \
+    "whose clock is another needs offset_s in rig), that pattern is that of the " \
+    "cloth that is filmed, and that the cameras stand as when rig was made; else " \
+    "calibrate again, or raise error-floor."
 #define SINK_CAPS "video/x-raw(ANY), width=(int)[ 1, 16384 ], " \
     "height=(int)[ 1, 16384 ]; " GST_CLOTH_OBSERVATIONS_CAPS
 
@@ -76,6 +82,8 @@ typedef struct
   gboolean seen[CLOTH_RIG_MAX_CAMERAS];
   guint64 n_compared[CLOTH_RIG_MAX_CAMERAS];
   guint64 n_left_out[CLOTH_RIG_MAX_CAMERAS];
+  gdouble stretches[CHECKED_SETS];      /* of the first sets that show neighbours */
+  guint n_stretches;
 } Check;
 
 typedef struct
@@ -107,6 +115,7 @@ struct _GstTriangulate
   guint64 sequence;
   gboolean had_others;          /* more than one camera has been linked */
   gboolean has_looked;          /* at the first pictures */
+  gboolean rates_told;          /* that the cameras' rates differ */
   Check check;
 };
 
@@ -233,17 +242,18 @@ check_count (Check * check, const ClothRig * rig,
 
 /* Posts, once, a warning if fewer than two cameras have carried any yet, or if a camera
  * contradicts the others on more than half of what it sees; the message's details name it as
- * "camera". */
+ * "camera". Of two nobody knows which is wrong. */
 static void
 check_judge (Check * check, GstElement * element,
     const GstTriangulateBoard * board, const ClothRig * rig)
 {
   guint c, worst = 0, n_seeing = 0;
-  const gchar *seeing = NULL;
+  const gchar *seeing = NULL, *others = NULL;
   gdouble share = 0.;
 
   for (c = 0; c < rig->n_cameras; c++) {
     if (check->seen[c]) {
+      others = seeing;
       seeing = rig->cameras[c].name;
       n_seeing++;
     }
@@ -276,15 +286,52 @@ check_judge (Check * check, GstElement * element,
     }
     check->n_compared[c] = check->n_left_out[c] = 0;
   }
-  if (share > 0.5) {
-    check->warned = TRUE;
+  if (share <= 0.5) {
+    return;
+  }
+  check->warned = TRUE;
+  if (n_seeing == 2) {
+    GST_ELEMENT_WARNING (element, STREAM, FAILED,
+        ("Cameras \"%s\" and \"%s\" contradict each other on %.0f%% of the %s "
+            "that both see.", others, seeing, 100. * share, board->features),
+        (CONTRADICTION_HINT));
+  } else {
     GST_ELEMENT_WARNING_WITH_DETAILS (element, STREAM, FAILED,
         ("Camera \"%s\" contradicts the others on %.0f%% of the %s it sees.",
             rig->cameras[worst].name, 100. * share, board->features),
-        ("See that each pad has its own camera, that pattern is that of the cloth "
-            "that is filmed, and that the cameras stand as when rig was made; else "
-            "calibrate again, or raise error-floor."),
-        ("camera", G_TYPE_STRING, rig->cameras[worst].name, NULL));
+        (CONTRADICTION_HINT), ("camera", G_TYPE_STRING,
+            rig->cameras[worst].name, NULL));
+  }
+}
+
+/* Posts a warning if so many neighbours are too far apart that cameras and print must be of
+ * different sizes. */
+static void
+check_size (Check * check, GstElement * element,
+    const ClothReconstruction * reconstruction)
+{
+  const gdouble stretch = cloth_median (check->stretches, check->n_stretches);
+
+  if (isnan (stretch) || cloth_reconstruction_allows (reconstruction, stretch)) {
+    return;
+  }
+  check->warned = TRUE;
+  GST_ELEMENT_WARNING (element, STREAM, FAILED,
+      ("Neighbours are %.3g times as far apart as on the flat cloth, in the "
+          "median, so their vertices are dropped.", stretch),
+      ("See that t in rig is in metres, that the size in pattern is what a ruler "
+          "says of the print, in metres, and that the films start together; else "
+          "set min-length and max-length to what this cloth does."));
+}
+
+static void
+check_all (Check * check, GstElement * element,
+    const GstTriangulateBoard * board, const ClothRig * rig,
+    const ClothReconstruction * reconstruction)
+{
+  check_judge (check, element, board, rig);
+  if (!check->warned) {
+    check_size (check, element, reconstruction);
   }
 }
 
@@ -292,6 +339,7 @@ check_judge (Check * check, GstElement * element,
 static void
 check_add (Check * check, GstElement * element,
     const GstTriangulateBoard * board, const ClothRig * rig,
+    const ClothReconstruction * reconstruction,
     const ClothTriangulateView * views, const ClothReconstructed * result)
 {
   if (check->warned) {
@@ -299,18 +347,26 @@ check_add (Check * check, GstElement * element,
   }
   check_same_film (check, element, board, rig, views);
   check_count (check, rig, views, result);
+  if (check->n_stretches < CHECKED_SETS) {
+    const gdouble stretch = cloth_reconstruction_get_stretch (reconstruction);
+
+    if (isfinite (stretch)) {
+      check->stretches[check->n_stretches++] = stretch;
+    }
+  }
   if (++check->n_sets % CHECKED_SETS == 0 && !check->warned) {
-    check_judge (check, element, board, rig);
+    check_all (check, element, board, rig, reconstruction);
   }
 }
 
 /* At the end: a film that is too short to be judged before. */
 static void
 check_end (Check * check, GstElement * element,
-    const GstTriangulateBoard * board, const ClothRig * rig)
+    const GstTriangulateBoard * board, const ClothRig * rig,
+    const ClothReconstruction * reconstruction)
 {
   if (check->n_sets > 0 && check->n_sets < CHECKED_SETS && !check->warned) {
-    check_judge (check, element, board, rig);
+    check_all (check, element, board, rig, reconstruction);
   }
 }
 
@@ -446,7 +502,7 @@ gst_triangulate_forget (GstTriangulate * self)
   g_clear_pointer (&self->pool, cloth_pool_free);
   gst_triangulate_clear_merges (self);
   self->fps_n = -1;
-  self->had_others = self->has_looked = FALSE;
+  self->had_others = self->has_looked = self->rates_told = FALSE;
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     gst_triangulate_view_forget (&self->view[i]);
   }
@@ -499,6 +555,10 @@ gst_triangulate_negotiate_src (GstClothSync * sync, GstCaps * downstream,
   if (!gst_triangulate_views_rate (self->view, &self->fps_n, &self->fps_d)) {
     return GST_AGGREGATOR_FLOW_NEED_DATA;
   }
+  if (!self->rates_told) {
+    self->rates_told = !gst_triangulate_views_check_rates (self->view,
+        GST_ELEMENT (self));
+  }
   *caps =
       gst_cloth_topology_to_caps (self->board->topology, self->fps_n,
       self->fps_d);
@@ -518,8 +578,8 @@ gst_triangulate_make_mesh (GstTriangulate * self,
     GST_ELEMENT_ERROR (self, STREAM, FAILED, ("%s", error->message), (NULL));
     return GST_FLOW_ERROR;
   }
-  check_add (&self->check, GST_ELEMENT (self), self->board, self->rig, views,
-      result);
+  check_add (&self->check, GST_ELEMENT (self), self->board, self->rig,
+      self->reconstruction, views, result);
   mesh = gst_cloth_mesh_new (self->sequence, result->n_vertices,
       result->positions, result->states, result->covariances);
   *out = gst_cloth_mesh_to_buffer (mesh);
@@ -724,7 +784,8 @@ gst_triangulate_aggregate (GstAggregator * agg, gboolean timeout)
       timeout);
 
   if (ret == GST_FLOW_EOS && self->board) {
-    check_end (&self->check, GST_ELEMENT (self), self->board, self->rig);
+    check_end (&self->check, GST_ELEMENT (self), self->board, self->rig,
+        self->reconstruction);
   }
   return ret;
 }

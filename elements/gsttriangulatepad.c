@@ -11,6 +11,9 @@
 
 #include "elements/gstclothproperties.h"
 
+/* What phones call 30 frames a second is off by so much. */
+#define NEAR_RATE 0.01
+
 struct _GstTriangulatePad
 {
   GstClothSyncPad parent;
@@ -184,6 +187,23 @@ look_at_pads (GstClothSync * self, GstTriangulateView * views)
   return n_pads;
 }
 
+/* What to do about pictures of another size than the camera's. */
+static const gchar *
+size_hint (const GstTriangulateView * view, const ClothCamera * camera)
+{
+  if (view->width == camera->height && view->height == camera->width) {
+    return "Width and height are exchanged: the film is stored turned, as "
+        "phones do. Put videoflip video-direction=auto before the detector.";
+  }
+  if ((gint64) view->width * camera->height ==
+      (gint64) view->height * camera->width) {
+    return "Film at the calibrated size, put videoscale after the detector, or "
+        "calibrate at this size.";
+  }
+  return "Film at the calibrated size, or calibrate at this size; another part "
+      "of the picture can't be scaled to it.";
+}
+
 gboolean
 gst_triangulate_views_map (GstClothSync * self, GstTriangulateView * views,
     const ClothRig * rig, gboolean * moved)
@@ -250,9 +270,7 @@ gst_triangulate_views_map (GstClothSync * self, GstTriangulateView * views,
       GST_ELEMENT_ERROR (self, STREAM, FORMAT,
           ("Pictures on sink_%u are %d×%d, but camera \"%s\" was calibrated at "
               "%d×%d.", i, view->width, view->height, camera->name,
-              camera->width, camera->height),
-          ("Film at the calibrated size, put videoscale after the detector, or "
-              "calibrate at this size."));
+              camera->width, camera->height), ("%s", size_hint (view, camera)));
       return FALSE;
     }
     offset = (GstClockTimeDiff) (camera->offset_s * GST_SECOND);
@@ -260,6 +278,33 @@ gst_triangulate_views_map (GstClothSync * self, GstTriangulateView * views,
       view->offset = offset;
       *moved = TRUE;
       gst_cloth_sync_set_pad_offset (self, i, offset);
+    }
+  }
+  return TRUE;
+}
+
+gboolean
+gst_triangulate_views_check_rates (const GstTriangulateView * views,
+    GstElement * element)
+{
+  const GstTriangulateView *first = NULL;
+
+  for (guint i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
+    const GstTriangulateView *view = &views[i];
+
+    if (!view->has_caps || view->fps_n == 0) {
+      continue;
+    }
+    if (!first) {
+      first = view;
+    } else if (ABS ((gdouble) view->fps_n * first->fps_d / ((gdouble)
+                first->fps_n * view->fps_d) - 1) > NEAR_RATE) {
+      GST_ELEMENT_WARNING (element, STREAM, FORMAT,
+          ("Frame rates differ: %d/%d on sink_%u, %d/%d on sink_%u.",
+              first->fps_n, first->fps_d, (guint) (first - views),
+              view->fps_n, view->fps_d, i),
+          ("Only pictures of one instant make a mesh. Film at one rate."));
+      return FALSE;
     }
   }
   return TRUE;

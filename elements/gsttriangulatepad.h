@@ -45,6 +45,10 @@ gboolean gst_triangulate_view_set_caps (GstTriangulateView * view,
 gboolean gst_triangulate_views_map (GstClothSync * sync,
     GstTriangulateView * views, const ClothRig * rig, gboolean * moved);
 
+/* FALSE after a warning that two cameras' caps have rates that are more than 1% apart. */
+gboolean gst_triangulate_views_check_rates (const GstTriangulateView * views,
+    GstElement * element);
+
 /* The rate of the mesh as far as the cameras' caps tell; *fps_n: the one said before, -1
  * for none. FALSE when no caps are known yet. */
 gboolean gst_triangulate_views_rate (const GstTriangulateView * views,

@@ -18,6 +18,7 @@
 
 #include <math.h>
 
+#include "gst/math/statistics.h"
 #include "gst/rig/dotbend.h"
 #include "gst/rig/errorfloor.h"
 #include "gst/rig/isometry.h"
@@ -144,6 +145,47 @@ cloth_reconstruction_get_error_floor (const ClothReconstruction * self)
   if (self->parameters.triangulate.error_floor >= 0)
     return self->parameters.triangulate.error_floor;
   return self->floor.weight > 0 ? self->floor.floor : FIRST_FLOOR;
+}
+
+/* @self: a reconstruction
+ *
+ * Returns: how far neighbours of the last set were apart over their distance on the flat
+ *   cloth, in the median, before any vertex was dropped for it; NaN where no neighbours
+ *   were seen
+ */
+gdouble
+cloth_reconstruction_get_stretch (const ClothReconstruction * self)
+{
+  const ClothTriangulation *t = self->triangulation;
+  const guint columns = self->grid.columns;
+  g_autoptr (GArray) ratios = g_array_new (FALSE, FALSE, sizeof (gdouble));
+
+  for (guint i = 0; i < self->result.n_vertices; i++)
+    for (guint k = 0; k < 2; k++) {
+      const guint next = i + (k ? columns : 1);
+      gdouble squares = 0, ratio;
+
+      if (k ? next >= self->result.n_vertices : next % columns == 0)
+        continue;
+      for (guint axis = 0; axis < 3; axis++)
+        squares += pow (t->position[axis][next] - t->position[axis][i], 2);
+      ratio = sqrt (squares) / self->grid.edge_m[k];
+      if (isfinite (ratio))
+        g_array_append_val (ratios, ratio);
+    }
+  return cloth_median ((gdouble *) (gpointer) ratios->data, ratios->len);
+}
+
+/* @self: a reconstruction
+ * @stretch: distance of neighbours over that on the flat cloth
+ *
+ * Returns: whether it is within the limits beyond which vertices are dropped
+ */
+gboolean
+cloth_reconstruction_allows (const ClothReconstruction * self, gdouble stretch)
+{
+  return stretch >= self->parameters.shortest
+      && (self->parameters.longest == 0 || stretch <= self->parameters.longest);
 }
 
 /* Each vertex alone, with the error floor as it is estimated now. */

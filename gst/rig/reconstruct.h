@@ -71,6 +71,9 @@ void cloth_reconstruction_set_pool (ClothReconstruction * self,
     ClothPool * pool);
 
 gdouble cloth_reconstruction_get_error_floor (const ClothReconstruction * self);
+gdouble cloth_reconstruction_get_stretch (const ClothReconstruction * self);
+gboolean cloth_reconstruction_allows (const ClothReconstruction * self,
+    gdouble stretch);
 const ClothReconstructed *cloth_reconstruction_run (ClothReconstruction * self,
     const ClothTriangulateView * views, GError ** error);
 

@@ -241,7 +241,121 @@ GST_START_TEST (test_short_films)
     fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
     end_all (&b);
     if (mixed) {
-      expect_message (&b, GST_MESSAGE_WARNING, "contradicts the others");
+      expect_message (&b, GST_MESSAGE_WARNING,
+          "Cameras \"cam0\" and \"cam1\" contradict each other");
+    }
+    fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
+    bench_clear (&b);
+  }
+}
+
+GST_END_TEST;
+
+/* A film that starts a frame late: the hint says that it may be its time. */
+GST_START_TEST (test_late_film)
+{
+  g_autoptr (GError) error = NULL;
+  g_autofree gchar *debug = NULL;
+  g_autoptr (GstMessage) message = NULL;
+  guint frame, i;
+  Bench b;
+
+  bench_init (&b, 3);
+  for (frame = 0; frame < 25; frame++) {
+    for (i = 0; i < 3; i++) {
+      GstClothQuad quads[N_QUADS];
+
+      see (&b, i, frame + (i == 1), quads);
+      push (&b, i, gst_cloth_quads_new (NULL, frame, COLUMNS, ROWS, quads,
+              N_QUADS), frame);
+    }
+    gst_buffer_unref (gst_harness_pull (b.src));
+  }
+  message = gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING);
+  fail_unless (message != NULL);
+  gst_message_parse_warning (message, &error, &debug);
+  fail_unless (strstr (error->message, "contradicts the others"));
+  fail_unless (strstr (debug, "start together") && strstr (debug, "offset_s"),
+      "%s", debug);
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* A rig in centimetres, and a print that is smaller or larger than pattern says: the cameras
+ * agree, but no cloth is like that. Said once, also of a short film. */
+GST_START_TEST (test_wrong_size)
+{
+  static const struct
+  {
+    gdouble rig, square;
+    guint n_frames;
+    const gchar *text;
+  } cases[] = {
+    {100, SQUARE, 30, "Neighbours are 10"}, {100, SQUARE, 3,
+        "Neighbours are 10"},
+    {1, 0.75 * SQUARE, 30, "Neighbours are 1.3"},
+    {1, 1.5 * SQUARE, 30, "Neighbours are 0."}, {1, SQUARE, 30, NULL}
+  };
+
+  for (guint k = 0; k < G_N_ELEMENTS (cases); k++) {
+    g_autoptr (ClothPattern) pattern = NULL;
+    g_autoptr (ClothRig) rig = NULL;
+    g_autoptr (GError) error = NULL;
+    Bench b;
+
+    bench_open (&b, 2);
+    rig = cloth_rig_load (b.rig_path, &error);
+    g_assert_no_error (error);
+    for (guint c = 0; c < 2; c++) {
+      for (guint i = 0; i < 3; i++) {
+        rig->cameras[c].t[i] *= cases[k].rig;
+      }
+    }
+    cloth_rig_save (rig, b.rig_path, &error);
+    g_assert_no_error (error);
+    pattern = cloth_pattern_new_checker (COLUMNS, ROWS, cases[k].square, 0.05,
+        TRUE, &error);
+    g_assert_no_error (error);
+    cloth_pattern_save (pattern, b.pattern_path, &error);
+    g_assert_no_error (error);
+    bench_link (&b, 2, FALSE, VIDEO);
+    for (guint frame = 0; frame < cases[k].n_frames; frame++) {
+      push_all (&b, frame);
+      gst_buffer_unref (gst_harness_pull (b.src));
+    }
+    end_all (&b);
+    if (cases[k].text) {
+      expect_message (&b, GST_MESSAGE_WARNING, cases[k].text);
+    }
+    fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
+    bench_clear (&b);
+  }
+}
+
+GST_END_TEST;
+
+/* Cameras of different rates are spoken of once; those of a phone's 29.9 and 30 are not. */
+GST_START_TEST (test_rates)
+{
+  static const gchar *const rates[] = { "30/1", "299/10", "0/1" };
+
+  for (guint k = 0; k < G_N_ELEMENTS (rates); k++) {
+    g_autofree gchar *caps = g_strconcat ("video/x-raw,format=GRAY8,width=1280,"
+        "height=720,framerate=", rates[k], NULL);
+    Bench b;
+
+    bench_open (&b, 2);
+    bench_link (&b, 2, FALSE, k ? "video/x-raw,format=GRAY8,width=1280,"
+        "height=720,framerate=30/1" : VIDEO);
+    gst_harness_set_src_caps_str (b.in[1], caps);
+    for (guint frame = 0; frame < 3; frame++) {
+      push_all (&b, frame);
+      gst_buffer_unref (gst_harness_pull (b.src));
+    }
+    if (k == 0) {
+      expect_message (&b, GST_MESSAGE_WARNING,
+          "25/1 on sink_0, 30/1 on sink_1");
     }
     fail_unless (gst_bus_pop_filtered (b.bus, GST_MESSAGE_WARNING) == NULL);
     bench_clear (&b);
@@ -529,6 +643,9 @@ triangulate_suite (void)
   tcase_add_test (tc, test_cameras_do_not_fit);
   tcase_add_test (tc, test_one_camera);
   tcase_add_test (tc, test_short_films);
+  tcase_add_test (tc, test_late_film);
+  tcase_add_test (tc, test_wrong_size);
+  tcase_add_test (tc, test_rates);
   tcase_add_test (tc, test_same_film);
   tcase_add_test (tc, test_missing_camera);
   tcase_add_test (tc, test_offset);

@@ -263,12 +263,37 @@ GST_START_TEST (test_wrong_size)
 {
   Bench b;
 
-  bench_init (&b, 2);
-  gst_harness_set_src_caps_str (b.in[1],
-      "video/x-raw,format=GRAY8,width=640,height=360,framerate=25/1");
-  push_all (&b, 0);
-  expect_error (&b, "640×360");
-  bench_clear (&b);
+  /* each with what helps, and never what would not */
+  static const struct
+  {
+    const gchar *size, *hint;
+    gboolean scale;
+  } cases[] = {
+    {"width=640,height=360", "videoscale after the detector", TRUE},
+    {"width=640,height=480", "can't be scaled", FALSE},
+    {"width=720,height=1280", "videoflip video-direction=auto before", FALSE}
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *caps = g_strconcat ("video/x-raw,format=GRAY8,",
+        cases[i].size, ",framerate=25/1", NULL);
+    g_autoptr (GstMessage) message = NULL;
+    g_autoptr (GError) error = NULL;
+    g_autofree gchar *debug = NULL;
+
+    bench_init (&b, 2);
+    gst_harness_set_src_caps_str (b.in[1], caps);
+    push_all (&b, 0);
+    message = gst_bus_timed_pop_filtered (b.bus, 10 * GST_SECOND,
+        GST_MESSAGE_ERROR);
+    fail_unless (message != NULL);
+    gst_message_parse_error (message, &error, &debug);
+    fail_unless (strstr (error->message, "on sink_1 are") && strstr (debug,
+            cases[i].hint), "%s (%s)", error->message, debug);
+    fail_unless (!strstr (debug, "videoscale") == !cases[i].scale, "%s", debug);
+    fail_unless (gst_harness_try_pull (b.src) == NULL);
+    bench_clear (&b);
+  }
 }
 
 GST_END_TEST;
