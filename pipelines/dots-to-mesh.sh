@@ -26,8 +26,8 @@ for film in "$@"; do
     echo "$film: no film; write CAMERA=FILE" >&2
     exit 2
   fi
-  films+=(filesrc "location=$file" ! decodebin "${progress[@]}" ! videoconvert
-      ! video/x-raw,format=I420 ! dotlabel "pattern=$pattern" "camera=$camera"
+  films+=(filesrc "location=$file" ! decodebin "${progress[@]}" "${upright[@]}"
+      ! videoconvert ! video/x-raw,format=I420 ! dotlabel "pattern=$pattern" "camera=$camera"
       ! tee "name=saw$n" "saw$n." ! queue ! join. "saw$n." ! queue ! clothmetapay
       ! filesink "location=$out/cloth.take/observations/$camera.obs")
   progress=() n=$((n + 1))

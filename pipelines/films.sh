@@ -12,6 +12,11 @@ launch () {
       -e '/^Additional debug info/d' -e '/^\.\..*\.c([0-9]*):/d'
 }
 
+# Between a decoder and what looks at its pictures: films of phones in portrait are stored turned,
+# and say so.
+# shellcheck disable=SC2034
+upright=(! videoconvert ! videoflip video-direction=auto)
+
 # Whether a take says where anything is: of each vertex in each frame one byte, 0 for unseen,
 # after a header of 128.
 any_located () {

@@ -41,8 +41,8 @@ add_film () {
     echo "$1: no film; write CAMERA=FILE" >&2
     exit 2
   fi
-  films+=(filesrc "location=$file" ! decodebin "${progress[@]}" ! videoconvert
-      ! video/x-raw,format=GRAY8)
+  films+=(filesrc "location=$file" ! decodebin "${progress[@]}" "${upright[@]}"
+      ! videoconvert ! video/x-raw,format=GRAY8)
   progress=()
 }
 
@@ -85,7 +85,8 @@ launch meshsrc "location=$out/cloth.take" ! meshsink "location=$out/cloth.obj"
 heading "A check over the first film"
 launch videotestsrc num-buffers=1 pattern=checkers-8 ! video/x-raw,width=256,height=256 \
     ! pngenc ! filesink "location=$out/check.png"
-launch filesrc "location=${first#*=}" ! decodebin ! videoconvert ! clothoverlay name=over \
+launch filesrc "location=${first#*=}" ! decodebin "${upright[@]}" ! videoconvert \
+        ! clothoverlay name=over \
         "rig=$rig" "camera=${first%%=*}" mesh-style=shaded "texture=$out/check.png" \
     ! videoconvert ! jpegenc ! avimux ! filesink "location=$out/check.avi" \
     meshsrc "location=$out/cloth.take" ! over.mesh

@@ -12,7 +12,9 @@ SPDX-License-Identifier: LGPL-2.1-or-later
 import importlib.util
 import json
 import os
+import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -474,6 +476,70 @@ def case_print_script(data):
                                'cam1=%s/cam1.mp4' % films], timeout=TIMEOUT_S, check=False,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         check(done.returncode == 2 and b'write CAMERA=FILE' in done.stdout, 'a film that is not there')
+
+
+def turned_film(film, path):
+    """A film as a phone stores it: three pictures turned to the left, and a matrix that says so."""
+    folder = os.path.dirname(path)
+    # pictures by number, since a decoder gives more behind the end of a stream
+    subprocess.run(['gst-launch-1.0', '-q', *('filesrc location=%s ! decodebin ! videoconvert ! videoflip '
+                                              'video-direction=90l ! jpegenc quality=98 ! multifilesink '
+                                              'location=%s/%%d.jpg' % (film, folder)).split()],
+                   timeout=TIMEOUT_S, check=True)
+    subprocess.run(['gst-launch-1.0', '-q', *('multifilesrc location=%s/%%d.jpg stop-index=2 '
+                                              'caps=image/jpeg,framerate=25/1 ! jpegdec ! jpegenc quality=98 ! qtmux '
+                                              '! filesink location=%s' % (folder, path)).split()],
+                   timeout=TIMEOUT_S, check=True)
+    with open(path, 'rb') as file:
+        movie = file.read()
+    head = movie.index(b'tkhd')
+    upright = struct.pack('>9i', 1 << 16, 0, 0, 0, 1 << 16, 0, 0, 0, 1 << 30)
+    at = movie.index(upright, head)
+    check(at < head + 100, "the track's matrix")
+    turned = struct.pack('>9i', 0, 1 << 16, 0, -1 << 16, 0, 0, 0, 0, 1 << 30)
+    with open(path, 'wb') as file:
+        file.write(movie[:at] + turned + movie[at + len(upright):])
+
+
+def case_print_turned(data):
+    """print-to-mesh.sh takes films that are stored turned, one beside one that is not."""
+    films = os.path.join(data, 'lineart_stereo3')
+    with tempfile.TemporaryDirectory() as folder:
+        turned_film(films + '/cam0.mp4', folder + '/phone.mov')
+        done = subprocess.run([os.path.join(ROOT, 'pipelines/print-to-mesh.sh'), films + '/rig.json',
+                               films + '/pattern.json', folder + '/cloth', 'cam0=%s/phone.mov' % folder,
+                               'cam2=%s/cam2.mp4' % films], timeout=TIMEOUT_S, check=False,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        print(done.stdout.decode())
+        check(done.returncode == 0, 'exit code %d' % done.returncode)
+        with open(folder + '/cloth/cloth.take/states.npy', 'rb') as file:
+            states = file.read()[128:]
+        # where both films have pictures
+        measured = [states[n:n + 33 * 35].count(2) / (33 * 35) for n in range(0, 3 * 33 * 35, 33 * 35)]
+        check(min(measured) > 0.8, 'measured of each frame: %s' % measured)
+
+
+def case_shortened(data):
+    """A pipeline that is cut behind the join has the film's first frames without a hole, though the decoder
+    has more pictures when the end comes; and no document cuts right behind a decoder."""
+    pair = os.path.join(data, 'checker_pair')
+    with tempfile.TemporaryDirectory() as folder:
+        branches = ' '.join('filesrc location=%s/%s.mp4 ! decodebin ! videoconvert ! saddledetect '
+                            '! quadtrack pattern=%s/pattern.json camera=%s ! queue ! join.'
+                            % (pair, name, pair, name) for name in ('cam0', 'cam1'))
+        subprocess.run(['gst-launch-1.0', '-q', *('triangulate name=join rig=%s/rig.json pattern=%s/pattern.json '
+                                                  '! identity eos-after=7 ! meshsink location=%s/short.take %s'
+                                                  % (pair, pair, folder, branches)).split()],
+                       timeout=TIMEOUT_S, check=True)
+        with open(folder + '/short.take/times.npy', 'rb') as file:
+            times = struct.unpack('<6d', file.read()[128:])
+        steps = [b - a for a, b in zip(times, times[1:])]
+        check(max(steps) - min(steps) < 1e-6 and max(steps) < 0.05, 'times: %s' % (times,))
+    for name in sorted(os.listdir(os.path.join(ROOT, 'docs'))):
+        if name.endswith('.md'):
+            with open(os.path.join(ROOT, 'docs', name), encoding='utf-8') as file:
+                check(not re.search(r'(decodebin|avdec_\w+)( ! videoconvert)?\s(\\\n\s*)?! identity eos-after',
+                                    file.read()), name + ' cuts no film behind its decoder')
 
 
 def case_dots_script(data):
