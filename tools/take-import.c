@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/cloth-io/observations.h"
 #include "gst/take/import.h"
 #include "gst/take/sequence.h"
 #include "gst/take/summary.h"
@@ -88,6 +89,44 @@ import_take (const Arguments * arguments)
   return DONE;
 }
 
+/* A line for each camera whose pictures are in the folder of the take. */
+static void
+add_cameras (GString * table, ClothTake * take)
+{
+  const guint n_vertices = cloth_take_get_topology (take)->n_vertices;
+  const gchar *label = "cameras";
+  g_autoptr (ClothObservations) seen = NULL;
+  g_autoptr (GError) error = NULL;
+
+  if (!gst_cloth_io_observations_load_take (take, NULL, &seen, &error))
+    cloth_summary_add (table, label, "not read: %s", error->message);
+  for (guint c = 0; seen && c < seen->rig->n_cameras; c++) {
+    guint64 n_points = 0;
+    guint n = 0, n_silhouettes = 0;
+
+    for (guint i = 0; i < seen->list->len; i++) {
+      const ClothObservation *picture =
+          &g_array_index (seen->list, ClothObservation, i);
+
+      if (picture->camera != c)
+        continue;
+      n++;
+      n_points += picture->n;
+      n_silhouettes += picture->has_silhouette;
+    }
+    if (n == 0)
+      continue;
+    cloth_summary_add (table, label, "%s: %u pictures, %" G_GUINT64_FORMAT
+        " points, %.1f %% of the vertices in a picture",
+        seen->rig->cameras[c].name, n, n_points,
+        100. * (gdouble) n_points / n / n_vertices);
+    label = "";
+    if (n_silhouettes > 0)
+      cloth_summary_add (table, label, "%s: %u silhouettes",
+          seen->rig->cameras[c].name, n_silhouettes);
+  }
+}
+
 gint
 inform_of_takes (const Arguments * arguments)
 {
@@ -99,10 +138,12 @@ inform_of_takes (const Arguments * arguments)
         cloth_mesh_format_stem (arguments->rest[i], CLOTH_MESH_FORMAT_TAKE);
     g_autoptr (ClothTake) take = cloth_take_open (folder, &error);
     g_autofree gchar *told = take ? cloth_take_summarise (take, &error) : NULL;
+    g_autoptr (GString) cameras = g_string_new (NULL);
 
     if (!told)
       return complain (FAILED, "%s: %s", arguments->rest[i], error->message);
-    g_print ("%s%s", i > 1 ? "\n" : "", told);
+    add_cameras (cameras, take);
+    g_print ("%s%s%s", i > 1 ? "\n" : "", told, cameras->str);
   }
   return DONE;
 }

@@ -182,6 +182,13 @@ look_below (Pass * pass, const ClothTakeInfo * info, gdouble time,
       pass->below[k] += middle[k] - positions[3 * i + k];
 }
 
+static void
+mark_unseen (gfloat * positions, gsize n_vertices)
+{
+  for (gsize i = 0; i < 3 * n_vertices; i++)
+    positions[i] = NAN;
+}
+
 static gboolean
 look (ClothTake * take, Pass * pass, GError ** error)
 {
@@ -193,7 +200,9 @@ look (ClothTake * take, Pass * pass, GError ** error)
   g_autoptr (GArray) scratch = g_array_new (FALSE, FALSE, sizeof (gdouble));
 
   for (guint i = 0; i < cloth_take_get_n_frames (take); i++) {
-    if (!cloth_take_read_positions (take, i, positions, error) ||
+    if (i >= cloth_take_get_n_positions (take))
+      mark_unseen (positions, n);
+    else if (!cloth_take_read_positions (take, i, positions, error) ||
         !cloth_take_read_states (take, i, positions, states, error))
       return FALSE;
     look_at_vertices (pass, i, positions, states, (guint) n);
@@ -278,6 +287,11 @@ add_seen (GString * table, const ClothTake * take, const Pass * pass)
         "x %.3f to %.3f m, y %.3f to %.3f m, z %.3f to %.3f m",
         pass->lowest[0], pass->highest[0], pass->lowest[1], pass->highest[1],
         pass->lowest[2], pass->highest[2]);
+  if (cloth_take_get_n_positions (take) < cloth_take_get_n_frames (take)) {
+    cloth_summary_add (table, "seen", "%s", cloth_take_get_n_positions (take) ?
+        "places of the first frame only" : "no places, only what cameras saw");
+    return;
+  }
   cloth_summary_add (table, "seen", "%.1f %%, the least %.1f %% in frame %u",
       100 * (gdouble) pass->n_measured / n, 100. * pass->least / n_vertices,
       pass->least_frame);

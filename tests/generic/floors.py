@@ -60,7 +60,7 @@ ROOMS = [
           'planar.h', 'rectify.h', 'calibrate.h', 'uncertainty.h', 'merge.h', 'triangulate.h', 'errorfloor.h',
           'reconstruct.h']),
     Room('gst/mesh', 'meshes and their files',
-         {'': ['topology.h', 'hold.h', 'side.h', 'strain.h'], 'formats': ['formats.h'],
+         {'': ['topology.h', 'hold.h', 'seam.h', 'side.h', 'strain.h'], 'formats': ['formats.h'],
           'fill': ['fill.h'], 'garment': ['garment.h']},
          [[''], ['formats'], ['fill', 'garment']]),
     Room('gst/take', 'recordings on disk', ['take.h', 'sequence.h', 'recover.h', 'measurement.h', 'import.h', 'summary.h']),

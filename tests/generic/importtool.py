@@ -250,6 +250,9 @@ def refused():
     bad('a spreadsheet', 'b.csv', says=['table of text'])
     bad('no file', 'none.csv', says=['none.csv'])
     bad('a coordinate beyond', write('b.csv', 'time,id,x,y,z\n0,1,2e20,3,4\n'), says=['no place'])
+    for name in 'scene.usda', 'mesh.fbx':
+        bad(name, write(name, '#usda 1.0\n(\n    upAxis = "Z"\n)\ndef Mesh "cloth"\n{\n}\n'),
+            says=['.c3d, .npy, .obj, .ply and .pc2'])
     bad('axes', 'long.csv', '--axes', 'x,x,z', says=['y-up'])
     bad('units', 'long.csv', '--units', 'miles', says=['mm'])
     bad('a rate', 'long.csv', '--rate', '-3', says=['--rate'])

@@ -582,8 +582,32 @@ def case_dots_summary(data):
         for word, state in (('three views', 1), ('two views', 2), ('filled', 3), ('unseen', 0)):
             share = '%.1f%%' % (100 * states.count(state) / len(states))
             check(share in rows[word], '%s: %s in %s' % (word, share, rows[word]))
+        # info sums them up, and does so when there is nothing else in the take
+        tool = os.path.join(os.environ['CLOTH_BUILD'], 'tools/gst-cloth-take-1.0')
+        told = []
+        other = folder + '/other'
+        shutil.copytree(take, other)
+        for name in None, 'positions.npy', 'states.npy', 'covariance.npy':
+            if name and os.path.exists(other + '/' + name):
+                os.remove(other + '/' + name)
+            if name not in ('positions.npy', 'states.npy'):
+                done = subprocess.run([tool, 'info', other], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                      check=False)
+                check(done.returncode == 0, done.stdout.decode())
+                told.append(done.stdout.decode())
+        for n in range(8):
+            rows = [re.search(r'cam%d: (\d+) pictures, (\d+) points, ([\d.]+) %% of the vertices in a picture$' % n,
+                              text, re.M).groups() for text in told]
+            check(rows[0] == rows[1] and int(rows[0][0]) == len(states) // 1023, 'cam%d: %s' % (n, rows))
+            check(abs(float(rows[0][2]) - 100 * int(rows[0][1]) / len(states)) < 0.06, 'and the share of vertices')
+        check('no places, only what cameras saw' in told[1] and 'only what' not in told[0], told[1])
+        front = re.search(r'cam0: \d+ pictures, (\d+) points', told[0]).group(1)
+        check(800 < int(front) / (len(states) // 1023) < 1100, 'a front sees nearly all')
         with open(take + '/observations/cam3.obs', 'r+b') as file:
             file.truncate(1000)
+        done = subprocess.run([tool, 'info', take], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+        check(done.returncode == 0 and 'cameras     not read: ' in done.stdout.decode() and
+              'cam3.obs' in done.stdout.decode(), 'info of a file that was cut off: ' + done.stdout.decode())
         script = os.path.join(ROOT, 'pipelines/dots-summary.py')
         for words in ('cam3.obs: byte 0 begins no observation', 'no observations/CAMERA.obs'):
             done = subprocess.run([script, take], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)

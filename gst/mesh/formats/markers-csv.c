@@ -395,7 +395,8 @@ find_columns (Parser * parser, GError ** error)
     parser->table.cells = g_ptr_array_new ();
   }
   return cloth_file_invalid (error,
-      "no coordinates are found in this table; " EXAMPLES);
+      "no coordinates are found in this file, read as a table, as all are but "
+      ".c3d, .npy, .obj, .ply and .pc2; " EXAMPLES);
 }
 
 static gboolean
