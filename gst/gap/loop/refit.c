@@ -642,20 +642,27 @@ fit_all (Refit * r, gboolean has_all, GError ** error)
 
 /* ---- what to change ---- */
 
-/* Three digits, as people type them. */
+/* Three digits, as people type them. Where runs failed no number goes further than it was run. */
 static void
 round_values (Refit * r)
 {
   for (guint i = 0; i < r->capabilities->parameters->len; i++) {
     const ClothSimulatorParameter *p =
         cloth_simulator_capabilities_get (r->capabilities, i);
+    const gdouble far = r->values[i] - p->value;
     gchar text[G_ASCII_DTOSTR_BUF_SIZE];
+    gdouble rounded;
 
-    if (r->values[i] == p->value)
+    if (far == 0.)
       continue;
     g_ascii_formatd (text, sizeof text, "%.3g", r->values[i]);
-    r->values[i] = CLAMP (g_ascii_strtod (text, NULL), p->range[0],
-        p->range[1]);
+    rounded = g_ascii_strtod (text, NULL);
+    if (r->failed && fabs (rounded - p->value) > fabs (far)) {
+      g_ascii_formatd (text, sizeof text, "%.3g", rounded - copysign (pow (10.,
+                  floor (log10 (fabs (r->values[i]))) - 2.), far));
+      rounded = g_ascii_strtod (text, NULL);
+    }
+    r->values[i] = CLAMP (rounded, p->range[0], p->range[1]);
   }
 }
 
