@@ -248,6 +248,47 @@ test_divergence (void)
   g_assert_cmpint (cloth_sim_get_state (sim, 1, NULL), ==, CLOTH_SIM_OK);
 }
 
+/* One model is set to where it is. Its clamps grip anew; those of its neighbour don't notice, nor do the steps, which are
+ * shorter as both are stretched far. */
+static void
+test_set_beside (void)
+{
+  const ClothSimOptions options = { TRUE, 1, CLOTH_SIMD_BEST, 0 };
+  g_autoptr (ClothScene) scene = swing ();
+  g_autoptr (ClothModel) one = model_new (0.2, 40.);
+  const ClothModel *models[2] = { one, one };
+  const gsize size = 3 * scene->topology->n_vertices * sizeof (gdouble);
+
+  for (guint i = 1; i < 5; i++)
+    cloth_scene_hold (scene, i);
+  for (guint i = 6; i < 42; i++)
+    scene->positions[3 * i + 2] -= 0.15;
+  for (guint k = 0; k < 2; k++) {
+    gdouble *x[2], step[2];
+
+    one->time_step = k ? 2e-4 : 0.;
+    for (guint set = 0; set < 2; set++) {
+      g_autoptr (ClothSim) sim = cloth_sim_new (scene, models, 2, &options,
+          NULL);
+
+      cloth_sim_advance (sim, 0.002);
+      if (set) {
+        g_autofree gdouble *at = positions_of (sim, 0);
+        g_autofree gdouble *v = velocities_of (sim, 0);
+
+        cloth_sim_set_state (sim, 0, at, v, cloth_sim_get_time (sim));
+      }
+      cloth_sim_advance (sim, 0.004);
+      step[set] = cloth_sim_get_time_step (sim);
+      x[set] = positions_of (sim, 1);
+    }
+    g_assert_cmpfloat (step[0], ==, step[1]);
+    g_assert_cmpmem (x[0], size, x[1], size);
+    g_free (x[0]);
+    g_free (x[1]);
+  }
+}
+
 static void
 test_disagree (void)
 {
@@ -380,6 +421,7 @@ main (int argc, char **argv)
   g_test_add_func ("/sim/null", test_null);
   g_test_add_func ("/sim/clamps", test_clamps);
   g_test_add_func ("/sim/divergence", test_divergence);
+  g_test_add_func ("/sim/set-beside", test_set_beside);
   g_test_add_func ("/sim/disagree", test_disagree);
   g_test_add_func ("/sim/short-steps", test_short_steps);
   g_test_add_func ("/sim/numbers", test_numbers);

@@ -108,7 +108,7 @@ gather (const ClothLaneState * state, SelfContact * self, guint lane)
     }
   }
   for (guint i = 0; hard && i < state->body->n_held; i++)
-    if (state->held[i])
+    if (CLOTH_LANE_AT (&state->held[i], lane))
       self->inverse_mass[state->body->held[i].particle] = 0.;
 }
 

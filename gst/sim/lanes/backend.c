@@ -258,7 +258,7 @@ group_free (gpointer group)
   g_aligned_free (state->sound_v);
   g_aligned_free (state->held_offset);
   g_aligned_free (state->held_x);
-  g_free (state->held);
+  g_aligned_free (state->held);
   g_free (state->held_since);
   g_free (state->fixed);
   g_free (state->triangles);
@@ -301,8 +301,9 @@ group_new (const ClothBody * body, const ClothModel * const *models,
   state->sound_v = lanes_new (n, sizeof *state->v);
   state->mass = lanes_new (n, sizeof *state->mass);
   state->inverse_mass = lanes_new (n, sizeof *state->mass);
-  state->held = g_new0 (gboolean, body->n_held + 1);
-  state->held_since = g_new0 (gdouble, body->n_held + 1);
+  state->held = lanes_new (body->n_held, sizeof *state->held);
+  state->held_since = g_new0 (gdouble, CLOTH_N_LANES *
+      (gsize) (body->n_held + 1));
   state->fixed = g_new0 (guint8, n);
   state->held_offset = lanes_new (body->n_held, sizeof *state->held_offset);
   state->held_x = lanes_new (body->n_held, sizeof *state->held_x);
@@ -497,7 +498,7 @@ group_set (gpointer group, guint lane, const gdouble * x, const gdouble * v,
     CLOTH_LANE_AT (&state->lag, l) = (ClothReal) lag_s;
   }
   state->diverged &= ~lanes;
-  CLOTH_LANE_NAME (cloth_lane_clamps_reset) (state);
+  CLOTH_LANE_NAME (cloth_lane_clamps_reset) (state, lanes);
   if (state->implicit)
     CLOTH_LANE_NAME (cloth_lane_implicit_reset) (state, lanes);
   reset_effects (state, lanes);

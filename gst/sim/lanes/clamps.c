@@ -3,11 +3,12 @@
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/sim/lanes/state.h"
 
-/* Forgets who was held: the next step counts as the moment of gripping. */
-void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state)
+/* Forgets who was held in some lanes: the next step counts as the moment of gripping there. */
+void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state,
+    ClothMask lanes)
 {
   for (guint i = 0; i < state->body->n_held; i++)
-    state->held[i] = FALSE;
+    state->held[i] &= ~lanes;
 }
 
 static void
@@ -28,6 +29,26 @@ clamp_place (const ClothLaneState * state, guint held, gdouble time,
           place);
 }
 
+/* The clamp grips in these lanes. */
+static void
+grip (ClothLaneState * state, guint i, gdouble start_s, ClothMask lanes,
+    const ClothLane before[3])
+{
+  ClothLane place[3];
+
+  clamp_place (state, i, start_s, place);
+  for (guint k = 0; k < 3; k++) {
+    state->held_x[i][k] = cloth_lane_select (lanes, before[k],
+        state->held_x[i][k]);
+    state->held_offset[i][k] = cloth_lane_select (lanes, before[k] - place[k],
+        state->held_offset[i][k]);
+  }
+  for (guint l = 0; l < CLOTH_N_LANES; l++)
+    if (CLOTH_LANE_AT (&lanes, l))
+      state->held_since[CLOTH_N_LANES * (gsize) i + l] = start_s;
+  state->held[i] |= lanes;
+}
+
 /* Where a clamp wants its particle at the end of a step; FALSE when it does not hold it
  * then. Before the step the particle is at @before. One that is off its path when the
  * clamp grips is drawn to it within one frame, not thrown. */
@@ -36,27 +57,22 @@ CLOTH_LANE_NAME (cloth_lane_clamp_grips) (ClothLaneState * state, guint i,
     gdouble time_s, const ClothLane before[3], ClothLane place[3])
 {
   const ClothBodyHeld * held = &state->body->held[i];
-  gdouble start = time_s - state->dt;
+  const gdouble *since = state->held_since + CLOTH_N_LANES * (gsize) i;
+  const ClothMask others = ~state->held[i];
   ClothLane share;
 
   /* half a step of tolerance: no clamp grips for a rounding error */
   if (time_s < held->from_s + 0.5 * state->dt
       || time_s > held->until_s + 0.5 * state->dt) {
-    state->held[i] = FALSE;
+    state->held[i] = state->held[i] ^ state->held[i];
     return FALSE;
   }
-  if (!state->held[i]) {
-    state->held[i] = TRUE;
-    state->held_since[i] = start;
-    clamp_place (state, i, start, place);
-    for (guint k = 0; k < 3; k++) {
-      state->held_x[i][k] = before[k];
-      state->held_offset[i][k] = before[k] - place[k];
-    }
-  }
+  if (cloth_lane_any (others))
+    grip (state, i, time_s - state->dt, others, before);
   clamp_place (state, i, time_s, place);
-  share = cloth_lane_set (MAX (0., 1. - (time_s - state->held_since[i]) /
-          state->body->frame_s));
+  for (guint l = 0; l < CLOTH_N_LANES; l++)
+    CLOTH_LANE_AT (&share, l) = (ClothReal) MAX (0., 1. - (time_s - since[l]) /
+        state->body->frame_s);
   for (guint k = 0; k < 3; k++)
     place[k] += share * state->held_offset[i][k];
   return TRUE;

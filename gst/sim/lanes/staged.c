@@ -26,9 +26,9 @@ hold (ClothLaneState * state)
   for (guint i = 0; i < body->n_held; i++) {
     guint p = body->held[i].particle;
 
-    for (guint k = 0; k < 3 && state->held[i]; k++)
-      state->v[p][k] = cloth_lane_select (hard, state->last_v[p][k],
-          state->v[p][k]);
+    for (guint k = 0; k < 3; k++)
+      state->v[p][k] = cloth_lane_select (hard & state->held[i],
+          state->last_v[p][k], state->v[p][k]);
   }
 }
 

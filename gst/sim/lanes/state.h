@@ -168,8 +168,8 @@ typedef struct
 
   /* Clamps: whether each holds, since when, how far off its path its particle was then,
    * and where the particle is now. */
-  gboolean *held;
-  gdouble *held_since;
+  ClothMask *held;
+  gdouble *held_since;          /* [held][lane] */
   ClothLane3 *held_offset;
   ClothLane3 *held_x;
   guint8 *fixed;                /* of each particle, filled by cloth_lane_strained () */
@@ -289,7 +289,8 @@ void CLOTH_LANE_NAME (cloth_lane_pulls_apply) (const ClothLaneState * state,
 void CLOTH_LANE_NAME (cloth_lane_pulls_diagonal) (const ClothLaneState * state,
     ClothLane h, ClothLane h2, ClothLane (*block)[6]);
 void CLOTH_LANE_NAME (cloth_lane_clamps) (ClothLaneState * state);
-void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state);
+void CLOTH_LANE_NAME (cloth_lane_clamps_reset) (ClothLaneState * state,
+    ClothMask lanes);
 gboolean CLOTH_LANE_NAME (cloth_lane_clamp_grips) (ClothLaneState * state,
     guint held, gdouble time_s, const ClothLane before[3], ClothLane place[3]);
 ClothLaneObstacles *CLOTH_LANE_NAME (cloth_lane_obstacles_new) (const

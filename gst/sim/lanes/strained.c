@@ -83,7 +83,7 @@ add_spring (const ClothLaneState * state, guint spring, ClothLane3 * rows)
         tension : tension + tension;
 }
 
-/* Which particles are held in all lanes, and will be for a frame. */
+/* Which particles clamps hold, and will for a frame: in all lanes alike. */
 static void
 find_fixed (ClothLaneState * state)
 {
@@ -93,8 +93,8 @@ find_fixed (ClothLaneState * state)
   if (cloth_lane_any (cloth_lane_less (zero, state->compliance)))
     return;
   for (guint i = 0; i < state->body->n_held; i++)
-    if (state->held[i] && state->body->held[i].until_s >= state->time +
-        state->body->frame_s)
+    if (state->body->held[i].from_s <= state->time
+        && state->body->held[i].until_s >= state->time + state->body->frame_s)
       state->fixed[state->body->held[i].particle] = TRUE;
 }
 
