@@ -245,12 +245,15 @@ gst_cloth_sync_set_pad_offset (GstClothSync * self, guint index,
     GstClockTimeDiff offset)
 {
   GstClothSyncPrivate *priv = gst_cloth_sync_get_instance_private (self);
+  GstClockTimeDiff before;
 
   g_return_if_fail (index < GST_CLOTH_SYNC_MAX_PADS);
 
   GST_OBJECT_LOCK (self);
+  before = priv->offset[index];
   priv->offset[index] = offset;
   GST_OBJECT_UNLOCK (self);
+  gst_cloth_sync_pads_shift_held (GST_ELEMENT (self), index, before, offset);
   gst_cloth_sync_update_timing (self);
 }
 
@@ -852,20 +855,6 @@ gst_cloth_sync_discard (GstClothSync * self, GstClothSyncHeads * heads,
   return discarded;
 }
 
-/* Returns: 1 for a set that lacks @pad, 0 when there is no pad */
-static guint
-gst_cloth_sync_count_missing (GstClothSync * self, GstClothSyncPad * pad)
-{
-  if (!pad) {
-    return 0;
-  }
-  GST_OBJECT_LOCK (self);
-  pad->missing++;
-  pad->lacked++;
-  GST_OBJECT_UNLOCK (self);
-  return 1;
-}
-
 /* Pops the heads of the set and hands them to the subclass. */
 static GstFlowReturn
 gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
@@ -883,7 +872,8 @@ gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
 
   for (i = 0; i < heads->n; i++) {
     if (!(mask >> i & 1)) {
-      n_missing += gst_cloth_sync_count_missing (self, heads->pad[i]);
+      n_missing += gst_cloth_sync_pad_count_missing (heads->pad[i],
+          GST_ELEMENT (self));
       continue;
     }
     /* only one reference must be left, so that the subclass can write in place */
@@ -891,7 +881,8 @@ gst_cloth_sync_emit (GstClothSync * self, GstClothSyncHeads * heads,
     views[i] = gst_cloth_sync_pop (self, heads->pad[i]);
     if (!views[i]) {
       mask &= ~(G_GUINT64_CONSTANT (1) << i);   /* flushed meanwhile */
-      n_missing += gst_cloth_sync_count_missing (self, heads->pad[i]);
+      n_missing += gst_cloth_sync_pad_count_missing (heads->pad[i],
+          GST_ELEMENT (self));
       continue;
     }
     n_views++;

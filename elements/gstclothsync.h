@@ -19,7 +19,7 @@ G_DECLARE_DERIVABLE_TYPE (GstClothSync, gst_cloth_sync, GST, CLOTH_SYNC,
  *   %GST_FLOW_OK, or returns %GST_AGGREGATOR_FLOW_NEED_DATA when a pad without caps
  *   has to give its own first. @downstream is what the peer allows. Optional: without
  *   it the source pad takes what the peer allows.
- * @look: looks at the frames that are next, @heads, as @views of @process_set, which may set pads' offsets:
+ * @look: looks at the frames that are next, or the gaps, @heads, as @views of @process_set, which may set pads' offsets:
  *   %GST_AGGREGATOR_FLOW_NEED_DATA when it did. Optional.
  * @process_set: one set of frames of the same instant. @views has @n entries, one for
  *   every pad index up to the highest in use; %NULL where the pad has no frame in this

@@ -262,6 +262,48 @@ gst_cloth_sync_pad_refuse (GstClothSyncPad * pad)
   GST_OBJECT_UNLOCK (pad);
 }
 
+void
+gst_cloth_sync_pads_shift_held (GstElement * element, guint index,
+    GstClockTimeDiff before, GstClockTimeDiff after)
+{
+  g_autoptr (GstClothSyncPad) pad = NULL;
+  GstClockTimeDiff time = GST_CLOCK_STIME_NONE;
+
+  GST_OBJECT_LOCK (element);
+  for (GList * l = element->sinkpads; l; l = l->next) {
+    if (GST_CLOTH_SYNC_PAD (l->data)->index == index) {
+      pad = gst_object_ref (l->data);
+    }
+  }
+  GST_OBJECT_UNLOCK (element);
+  if (!pad) {
+    return;
+  }
+  GST_OBJECT_LOCK (pad);
+  if (pad->held && GST_CLOCK_STIME_IS_VALID (pad->held_time)
+      && (__builtin_add_overflow (pad->held_time, before, &time)
+          || __builtin_sub_overflow (time, after, &time))) {
+    time = after < 0 ? G_MAXINT64 : G_MININT64 + 1;
+  }
+  if (GST_CLOCK_STIME_IS_VALID (time)) {
+    pad->held_time = time;
+  }
+  GST_OBJECT_UNLOCK (pad);
+}
+
+guint
+gst_cloth_sync_pad_count_missing (GstClothSyncPad * pad, GstElement * element)
+{
+  if (!pad) {
+    return 0;
+  }
+  GST_OBJECT_LOCK (element);
+  pad->missing++;
+  pad->lacked++;
+  GST_OBJECT_UNLOCK (element);
+  return 1;
+}
+
 /* Forgets all times, and what is held. */
 static void
 gst_cloth_sync_pad_reset (GstClothSyncPad * pad)

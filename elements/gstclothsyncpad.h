@@ -145,6 +145,15 @@ void gst_cloth_sync_pad_hold (GstClothSyncPad * pad, GstBuffer * buffer,
 void gst_cloth_sync_pad_believe (GstClothSyncPad * pad);
 void gst_cloth_sync_pad_refuse (GstClothSyncPad * pad);
 
+/* The common clock of pad @index of @element was @before and is @after a stream's: so is the time of a frame that is
+ * held. */
+void gst_cloth_sync_pads_shift_held (GstElement * element, guint index,
+    GstClockTimeDiff before, GstClockTimeDiff after);
+
+/* Returns: 1 for a set of @element that lacks @pad, 0 when there is no pad */
+guint gst_cloth_sync_pad_count_missing (GstClothSyncPad * pad,
+    GstElement * element);
+
 /* The stream begins anew: forgets all times, what is held, and what was counted since. */
 void gst_cloth_sync_pad_restart (GstClothSyncPad * pad, GstElement * element);
 

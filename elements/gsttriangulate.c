@@ -114,7 +114,6 @@ struct _GstTriangulate
   GstTriangulateView view[GST_CLOTH_SYNC_MAX_PADS];
   guint64 sequence;
   gboolean had_others;          /* more than one camera has been linked */
-  gboolean has_looked;          /* at the first pictures */
   gboolean rates_told;          /* that the cameras' rates differ */
   Check check;
 };
@@ -502,7 +501,7 @@ gst_triangulate_forget (GstTriangulate * self)
   g_clear_pointer (&self->pool, cloth_pool_free);
   gst_triangulate_clear_merges (self);
   self->fps_n = -1;
-  self->had_others = self->has_looked = self->rates_told = FALSE;
+  self->had_others = self->rates_told = FALSE;
   for (i = 0; i < GST_CLOTH_SYNC_MAX_PADS; i++) {
     gst_triangulate_view_forget (&self->view[i]);
   }
@@ -654,39 +653,45 @@ gst_triangulate_set_name (GstTriangulateView * view,
   }
 }
 
-/* Whose the first pictures are, before they are joined by their cameras' clocks. What is wrong with them
- * is told when they are. */
+/* Whose a pad's first picture is, before it is joined by its camera's clock; a gap doesn't say. Damage is told when it
+ * is joined. */
 static GstFlowReturn
 gst_triangulate_look_ahead (GstClothSync * sync, GstBuffer ** heads, guint n)
 {
   GstTriangulate *self = GST_TRIANGULATE (sync);
-  gboolean moved;
+  gboolean moved, is_new = FALSE;
 
-  if (self->has_looked || !self->rig || !self->board) {
+  if (!self->rig || !self->board) {
     return GST_FLOW_OK;
   }
-  self->has_looked = TRUE;
   for (guint i = 0; i < n; i++) {
+    GstTriangulateView *view = &self->view[i];
     g_autoptr (GstBuffer) unpacked = NULL;
     GstTriangulateSeen seen;
 
-    self->view[i].carries = FALSE;
-    if (!heads[i]) {
+    if (view->looked || !heads[i]
+        || GST_BUFFER_FLAG_IS_SET (heads[i], GST_BUFFER_FLAG_GAP)) {
       continue;
     }
-    if (self->view[i].observations) {
+    view->looked = is_new = TRUE;
+    view->carries = FALSE;
+    if (view->observations) {
       unpacked = gst_buffer_new ();
       if (!gst_cloth_observations_unpack (heads[i], unpacked, NULL)) {
         continue;
       }
     }
-    self->view[i].carries = gst_triangulate_board_see (self->board,
+    view->carries = gst_triangulate_board_see (self->board,
         unpacked ? unpacked : heads[i], &seen);
-    if (self->view[i].carries) {
-      gst_triangulate_set_name (&self->view[i], &seen);
+    if (view->carries) {
+      gst_triangulate_set_name (view, &seen);
     }
   }
-  if (!gst_triangulate_views_map (sync, self->view, self->rig, &moved)) {
+  if (!is_new) {
+    return GST_FLOW_OK;
+  }
+  if (!gst_triangulate_has_cameras (self)
+      || !gst_triangulate_views_map (sync, self->view, self->rig, &moved)) {
     return GST_FLOW_ERROR;
   }
   return moved ? GST_AGGREGATOR_FLOW_NEED_DATA : GST_FLOW_OK;

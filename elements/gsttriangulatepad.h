@@ -29,6 +29,7 @@ typedef struct {
   gchar *property;              /* the pad's property, of this set */
   gchar *meta;                  /* the name that the metadata carries */
   gboolean present, carries;
+  gboolean looked;              /* at its first picture */
   gboolean trusted;             /* its packets have been of the rig and of the pattern */
   gint camera;                  /* in rig; -1 when not known */
   GstClockTimeDiff offset;

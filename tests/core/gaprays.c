@@ -264,21 +264,25 @@ test_stop (void)
   observer = cloth_observer_new (scene, model, &options, &error);
   g_assert_no_error (error);
   for (guint turn = 0; turn < 2; turn++) {
+    /* anew, the second time at the very frame at which it was stopped */
+    const gdouble begin = turn ? 1e6 : 0.;
+
     cloth_observer_restart (observer);
     for (guint frame = 0; frame < 2; frame++) {
-      cloth_observer_push (observer, (gdouble) frame / FPS, places, 0);
+      cloth_observer_push (observer, begin + (gdouble) frame / FPS, places, 0);
       g_assert_true (cloth_observer_pop (observer, residuals[turn], &error));
       g_assert_no_error (error);
     }
-    cloth_observer_push (observer, 1e6, places, 0);
+    cloth_observer_push (observer, begin + 1e6, places, 0);
     g_atomic_int_set (&stop, 1);
     g_assert_false (cloth_observer_pop (observer, rest, &error));
     g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED);
     g_clear_error (&error);
     g_atomic_int_set (&stop, 0);
   }
-  g_assert_cmpmem (residuals[0], sizeof residuals[0], residuals[1],
-      sizeof residuals[1]);
+  /* a million seconds have fewer digits behind the point */
+  for (guint i = 0; i < 3 * VERTICES; i++)
+    NEAR (residuals[0][i], residuals[1][i], 1e-6);
 }
 
 int

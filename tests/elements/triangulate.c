@@ -413,16 +413,22 @@ GST_START_TEST (test_missing_camera)
 
 GST_END_TEST;
 
-/* Pictures of a pad of which camera 1 is @ahead frames ahead of the others. */
+/* Pictures of a pad of which camera 1 is @ahead frames ahead of the others, of streams that begin with frame @first. */
 static void
-push_ahead (Bench * b, guint pad, guint frame, gint ahead)
+push_from (Bench * b, guint pad, guint first, guint frame, gint ahead)
 {
   const gint instant = (gint) frame - (pad == 1 ? ahead : 0) + MAX (ahead, 0);
   GstClothQuad quads[N_QUADS];
 
   see (b, pad, (guint) instant, quads);
   push (b, pad, gst_cloth_quads_new (NULL, frame, COLUMNS, ROWS, quads,
-          N_QUADS), frame);
+          N_QUADS), first + frame);
+}
+
+static void
+push_ahead (Bench * b, guint pad, guint frame, gint ahead)
+{
+  push_from (b, pad, 0, frame, ahead);
 }
 
 static void
@@ -472,6 +478,26 @@ GST_START_TEST (test_offset)
     push_ahead (&b, 2, frame, -2);
     expect_frame (&b, frame, frame, frame == 2 ? GST_CLOTH_VERTEX_MEASURED :
         GST_CLOTH_VERTEX_TWO_VIEWS);
+  }
+  bench_clear (&b);
+}
+
+GST_END_TEST;
+
+/* The same of streams that begin so late that their first times are not believed at once. */
+GST_START_TEST (test_offset_late)
+{
+  const guint first = 20 * GST_SECOND / PERIOD;
+  Bench b;
+
+  open_ahead (&b, -2);
+  for (guint frame = 0; frame < 2; frame++)
+    for (guint pad = 0; pad < 3; pad++)
+      push_from (&b, pad == 1 ? 0 : pad == 0 ? 1 : 2, first, frame, -2);
+  {
+    g_autoptr (GstClothMesh) mesh = pull (&b, first);
+
+    fail_unless (check_all (mesh, 0, GST_CLOTH_VERTEX_TWO_VIEWS) < 1e-6);
   }
   bench_clear (&b);
 }
@@ -649,6 +675,7 @@ triangulate_suite (void)
   tcase_add_test (tc, test_same_film);
   tcase_add_test (tc, test_missing_camera);
   tcase_add_test (tc, test_offset);
+  tcase_add_test (tc, test_offset_late);
   tcase_add_test (tc, test_names_in_metadata);
   tcase_add_test (tc, test_names_of_pads);
   tcase_add_test (tc, test_observations);

@@ -426,7 +426,7 @@ def check_page(program):
         assert browser.text('#unseen') == ('This would have shown: air drag: coefficient above 0.09; wind: x beyond ±0.14 m/s; '
                                            'wind: y beyond ±0.16 m/s; and 3 more.')
         assert browser.run('return [...document.querySelectorAll("#sets li")].map(node => node.textContent)') == [
-            'Nothing: the model lacks nothing that shows 90%',
+            'No effect of the library 90%',
             'Air drag linear and an unknown error of the measured positions together 5%']
         assert not browser.run('return document.getElementById("patch")')
         take = browser.run('return JSON.parse(document.getElementById("gap").textContent)')['takes'][1]

@@ -362,7 +362,7 @@ find_distance (const ClothRecording * twin, const ClothRecording * r)
 }
 
 /* What lies between frames must be known to better than the recording's noise, or well enough to tell how far the
- * twin is from the recording: then it counts as noise. */
+ * twin is from the recording: then it counts as noise, which is one number then. */
 static gboolean
 check_rate (const Twin * t, ClothRecording * twin, GError ** error)
 {
@@ -383,10 +383,11 @@ check_rate (const Twin * t, ClothRecording * twin, GError ** error)
   ratio = off * t->moments[worst].width / r->sigma;
   if (!(ratio > 1.))
     return TRUE;
-  twin->between = ratio * r->sigma;
-  twin->sigma = hypot (twin->sigma, twin->between);
-  if (twin->between < LEAST_KNOWN * find_distance (twin, r))
+  if (!r->noise && ratio * r->sigma < LEAST_KNOWN * find_distance (twin, r)) {
+    twin->between = ratio * r->sigma;
+    twin->sigma = hypot (twin->sigma, twin->between);
     return TRUE;
+  }
   if (r->times[worst] < t->times[0] || r->times[worst] > t->times[last])
     return refuse (t, error, "it has no frame at %g s, at the recording's %s, "
         "and to go on from its others would be %.2g m off, more than the "

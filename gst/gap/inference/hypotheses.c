@@ -984,8 +984,7 @@ raise_parts (const ClothDiagnosis * d, const ClothGapHypothesis * base,
         continue;
       behind = h->by_residual + rest->by_residual - now->by_residual +
           find_nested_evidence (d, h, c) - find_nested_evidence (d, now, b);
-      /* not where one is infinite: then it is NaN */
-      if (behind < part->by_residual)
+      if (isfinite (behind) && behind < part->by_residual)
         part->by_residual = behind;
     }
   }

@@ -661,6 +661,9 @@ round_values (Refit * r)
       g_ascii_formatd (text, sizeof text, "%.3g", rounded - copysign (pow (10.,
                   floor (log10 (fabs (r->values[i]))) - 2.), far));
       rounded = g_ascii_strtod (text, NULL);
+      /* the user's own may have more digits */
+      if (!((rounded - p->value) * far > 0.))
+        rounded = r->values[i];
     }
     r->values[i] = CLAMP (rounded, p->range[0], p->range[1]);
   }

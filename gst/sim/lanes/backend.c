@@ -455,6 +455,8 @@ group_advance (gpointer group, gdouble until_s, guint n_steps, guint stages)
     finish_step (state, step == n_steps ? until_s :
         start + (until_s - start) * step / n_steps);
   }
+  /* also of what was stopped: all groups have one clock */
+  state->time = until_s;
   check_sound (state, start);
 }
 

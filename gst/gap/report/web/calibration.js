@@ -1,5 +1,5 @@
 /*! Made by gst/gap/report/web/build.mjs: do not edit.
-sources sha256 585a4cb550ae7aa2e51236a577663e2062e19d61350f731d997b5690cd77bd3c
+sources sha256 f9cfe8690467fd3747f62b5be1beae1b6c07badd70fd87723a09b4ed808e2082
 below sha256 5c750294d21ed3a355f8c69bd63cedce7e845357bda1b6ddb009476d250805fd
 
 Our own part: SPDX-License-Identifier: LGPL-2.1-or-later. With it come

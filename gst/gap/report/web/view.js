@@ -1,5 +1,5 @@
 /*! Made by gst/gap/report/web/build.mjs: do not edit.
-sources sha256 585a4cb550ae7aa2e51236a577663e2062e19d61350f731d997b5690cd77bd3c
+sources sha256 f9cfe8690467fd3747f62b5be1beae1b6c07badd70fd87723a09b4ed808e2082
 below sha256 b5f9afcc384c258709ab04e3286e91c8fc8cfd2e92eeeb471f3fa0203b412660
 
 Our own part: SPDX-License-Identifier: LGPL-2.1-or-later. With it come

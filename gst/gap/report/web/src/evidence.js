@@ -46,7 +46,7 @@ const RIVALS = { force_field: 'an unknown force', displacement_field: 'an unknow
 function explanation({ effects, rival }) {
   const names = effects.map(spoken);
   if (rival) names.push(RIVALS[rival]);
-  if (!names.length) return 'nothing: the model lacks nothing that shows';
+  if (!names.length) return 'no effect of the library';
   return names.length === 1 ? `${names[0]} alone` : `${listed(names)} together`;
 }
 
