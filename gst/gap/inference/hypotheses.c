@@ -969,7 +969,8 @@ raise_parts (const ClothDiagnosis * d, const ClothGapHypothesis * base,
     const ClothGapHypothesis *h = &g_array_index (hypotheses,
         ClothGapHypothesis, i);
 
-    if (h == now || !h->is_compared || !h->z || h->n_winds)
+    /* one in place of one: several together explain much */
+    if (h->n != now->n + 1 || !h->is_compared || !h->z || h->n_winds)
       continue;
     for (guint b = 0; b < now->n; b++) {
       const ClothGapHypothesis *rest = find_part (hypotheses, now, b);
