@@ -29,7 +29,7 @@ void
 cloth_synthesis_options_init (ClothSynthesisOptions * options)
 {
   *options = (ClothSynthesisOptions) {
-    1600., 0.3, 12, 2, {
+    1600., 0.3, 18, 2, {
   0}};
 }
 

@@ -10,7 +10,7 @@ G_BEGIN_DECLS
 
 /* @gain: of the springs that draw the cloth while it is fitted, 1/s² (1600)
  * @window_s: length of the windows in which it is let go to be measured, s (0.3)
- * @n_passes: most linearisations of a fit (12)
+ * @n_passes: most linearisations of a fit (18)
  * @turns: how often what was seen is looked at anew with the fitted numbers (2)
  * @rollout: how to simulate
  */
