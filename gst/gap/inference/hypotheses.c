@@ -954,14 +954,33 @@ bound_by_parts (const ClothDiagnosis * d, const ClothGapHypothesis * base,
     }
 }
 
+/* Less the posterior in this linearisation of what was simulated in an earlier one; infinite where nothing was. */
+static gdouble
+find_behind_here (const ClothDiagnosis * d, const ClothGapLinearisation * l,
+    const ClothGapHypothesis * h)
+{
+  g_autoptr (ClothGapGram) gram = NULL;
+  ClothGapEvidence evidence;
+
+  if (!h->z || h->n_winds)
+    return INFINITY;
+  gram = cloth_gap_gram_new (l->likelihood, h->z, h->derivatives,
+      h->n_directions);
+  if (!cloth_gap_gram_find_evidence (gram, all_directions, h->at, h->priors,
+          h->n_directions, &evidence))
+    return INFINITY;
+  return -objective_at (l, h, h->at, h->z) - evidence.log_volume -
+      log_odds (d, h);
+}
+
 /* What explains the same as an effect of the base makes that effect superfluous: a set without it is as likely as the
  * set with it, but for what the effect adds there. That is as much less than what it was found to add to the base as
- * the posteriors of both sets, of this linearisation, say. */
+ * the posteriors of both sets, of this linearisation, say; and no more likely than its own simulation is here. */
 static void
-raise_parts (const ClothDiagnosis * d, const ClothGapHypothesis * base,
+raise_parts (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     GArray * hypotheses)
 {
-  const ClothGapHypothesis *now = find_same (hypotheses, base);
+  const ClothGapHypothesis *now = find_same (hypotheses, l->base);
 
   if (!now || !now->is_compared || !now->z)
     return;
@@ -986,7 +1005,8 @@ raise_parts (const ClothDiagnosis * d, const ClothGapHypothesis * base,
       behind = h->by_residual + rest->by_residual - now->by_residual +
           find_nested_evidence (d, h, c) - find_nested_evidence (d, now, b);
       if (isfinite (behind) && behind < part->by_residual)
-        part->by_residual = behind;
+        part->by_residual = MIN (part->by_residual, MAX (behind,
+                find_behind_here (d, l, part)));
     }
   }
 }
@@ -1019,7 +1039,7 @@ rank (const ClothDiagnosis * d, const ClothGapLinearisation * l,
       h->by_residual += after - before;
   }
   bound_by_parts (d, l->base, hypotheses);
-  raise_parts (d, l->base, hypotheses);
+  raise_parts (d, l, hypotheses);
   for (guint i = 0; i < hypotheses->len; i++)
     best = MIN (best, g_array_index (hypotheses, ClothGapHypothesis,
             i).by_residual);
