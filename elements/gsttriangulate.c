@@ -587,26 +587,32 @@ gst_triangulate_make_mesh (GstTriangulate * self,
   return GST_FLOW_OK;
 }
 
-/* Whether a view carries anything, in its own or in unpacked metadata. A damaged one is as
- * good as none. */
+/* Whether a view carries anything, in its own or in unpacked metadata; not with @error: it is damaged. */
+static gboolean
+gst_triangulate_see (GstTriangulate * self, guint index, GstBuffer * view,
+    GstBuffer ** unpacked, GstTriangulateSeen * seen, GError ** error)
+{
+  if (!self->view[index].observations) {
+    return gst_triangulate_board_see (self->board, view, seen);
+  }
+  *unpacked = gst_buffer_new ();
+  return gst_cloth_observations_unpack (view, *unpacked, error)
+      && gst_triangulate_board_see (self->board, *unpacked, seen);
+}
+
+/* The same of a view that is joined. A damaged one is as good as none. */
 static GstFlowReturn
 gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
     GstBuffer ** unpacked, GstTriangulateSeen * seen, gboolean * carries)
 {
   g_autoptr (GError) error = NULL;
 
-  *carries = FALSE;
-  if (!self->view[index].observations) {
-    *carries = gst_triangulate_board_see (self->board, view, seen);
-    return GST_FLOW_OK;
-  }
-  *unpacked = gst_buffer_new ();
-  if (!gst_cloth_observations_unpack (view, *unpacked, &error)) {
+  *carries = gst_triangulate_see (self, index, view, unpacked, seen, &error);
+  if (error) {
     g_prefix_error (&error, "sink_%u: ", index);
     return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
         error);
   }
-  *carries = gst_triangulate_board_see (self->board, *unpacked, seen);
   if (!*carries || !self->view[index].trusted
       || (gst_triangulate_board_fits (self->board, seen)
           && (seen->camera[0] == '\0' || !self->view[index].meta
@@ -674,15 +680,8 @@ gst_triangulate_look_ahead (GstClothSync * sync, GstBuffer ** heads, guint n)
       continue;
     }
     view->looked = is_new = TRUE;
-    view->carries = FALSE;
-    if (view->observations) {
-      unpacked = gst_buffer_new ();
-      if (!gst_cloth_observations_unpack (heads[i], unpacked, NULL)) {
-        continue;
-      }
-    }
-    view->carries = gst_triangulate_board_see (self->board,
-        unpacked ? unpacked : heads[i], &seen);
+    view->carries = gst_triangulate_see (self, i, heads[i], &unpacked, &seen,
+        NULL);
     if (view->carries) {
       gst_triangulate_set_name (view, &seen);
     }

@@ -64,3 +64,29 @@ cloth_chi_square_tail (gdouble x, guint n)
       return 0.5 * erfc (z * M_SQRT1_2);
   }
 }
+
+static guint
+common_divisor (guint a, guint b)
+{
+  while (b) {
+    guint rest = a % b;
+
+    a = b;
+    b = rest;
+  }
+  return a;
+}
+
+/* @least: a step, at least 1
+ * @n: a number; 0: any step will do
+ *
+ * Returns: the shortest step, from @least on, that has no divisor in common with @n: of @n things in
+ *   a ring it comes to all, of rows of @n to every column
+ */
+guint
+cloth_coprime_step (guint least, guint n)
+{
+  while (n && common_divisor (least, n) > 1)
+    least++;
+  return least;
+}

@@ -13,5 +13,6 @@ G_BEGIN_DECLS
 gint cloth_compare_doubles (gconstpointer a, gconstpointer b);
 gdouble cloth_median (gdouble * values, gsize n);
 gdouble cloth_chi_square_tail (gdouble x, guint n);
+guint cloth_coprime_step (guint least, guint n);
 
 G_END_DECLS

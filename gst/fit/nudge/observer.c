@@ -385,15 +385,9 @@ begin (ClothObserver * self, const Frame * frame, const gdouble * velocity)
 }
 
 static gboolean
-is_stopped (const ClothObserver * self)
-{
-  return self->options.stop && g_atomic_int_get (self->options.stop);
-}
-
-static gboolean
 check_state (ClothObserver * self, GError ** error)
 {
-  if (is_stopped (self)) {
+  if (self->options.stop && g_atomic_int_get (self->options.stop)) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_CANCELLED, "stopped");
     return FALSE;
   }

@@ -23,22 +23,14 @@
 #define GROSS 4.
 #define GROSS_DEVIATIONS 6.
 
-static guint
-find_divisor (guint a, guint b)
-{
-  return b ? find_divisor (b, a % b) : a;
-}
-
 void
 cloth_camera_points_init (ClothCameraPoints * p, const ClothCameraView * v,
     guint stride)
 {
   const ClothRecording *r = v->recording;
-  const guint columns = r->scene->topology->columns;
 
   /* not all from a few columns of a grid */
-  while (columns && find_divisor (stride, columns) > 1)
-    stride++;
+  stride = cloth_coprime_step (stride, r->scene->topology->columns);
   p->stride = stride;
   p->n = (r->n + stride - 1) / stride;
   p->positions = g_new (gdouble, 3 * (gsize) p->n * r->n_frames);

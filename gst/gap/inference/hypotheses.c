@@ -960,17 +960,18 @@ find_behind_here (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     const ClothGapHypothesis * h)
 {
   g_autoptr (ClothGapGram) gram = NULL;
-  ClothGapEvidence evidence;
+  ClothGapHypothesis here = *h;
 
   if (!h->z || h->n_winds)
     return INFINITY;
   gram = cloth_gap_gram_new (l->likelihood, h->z, h->derivatives,
       h->n_directions);
   if (!cloth_gap_gram_find_evidence (gram, all_directions, h->at, h->priors,
-          h->n_directions, &evidence))
+          h->n_directions, &here.evidence))
     return INFINITY;
-  return -objective_at (l, h, h->at, h->z) - evidence.log_volume -
-      log_odds (d, h);
+  here.evidence.log_evidence = objective_at (l, h, h->at, h->z) +
+      here.evidence.log_volume;
+  return find_behind (d, &here);
 }
 
 /* What explains the same as an effect of the base makes that effect superfluous: a set without it is as likely as the
@@ -984,26 +985,27 @@ raise_parts (const ClothDiagnosis * d, const ClothGapLinearisation * l,
 
   if (!now || !now->is_compared || !now->z)
     return;
-  for (guint i = 0; i < hypotheses->len; i++) {
-    const ClothGapHypothesis *h = &g_array_index (hypotheses,
-        ClothGapHypothesis, i);
+  for (guint b = 0; b < now->n; b++) {
+    const ClothGapHypothesis *rest = find_part (hypotheses, now, b);
+    const gdouble own = find_nested_evidence (d, now, b);
 
-    /* one in place of one: several together explain much */
-    if (h->n != now->n + 1 || !h->is_compared || !h->z || h->n_winds)
-      continue;
-    for (guint b = 0; b < now->n; b++) {
-      const ClothGapHypothesis *rest = find_part (hypotheses, now, b);
+    for (guint i = 0; rest && i < hypotheses->len; i++) {
+      const ClothGapHypothesis *h = &g_array_index (hypotheses,
+          ClothGapHypothesis, i);
       ClothGapHypothesis *part;
       gdouble behind;
       guint c = 0;
 
+      /* one in place of one: several together explain much */
+      if (h->n != now->n + 1 || !h->is_compared || !h->z || h->n_winds)
+        continue;
       while (h->candidates[c] != now->candidates[b])
         c++;
       part = find_part (hypotheses, h, c);
-      if (!part || !rest)
+      if (!part)
         continue;
       behind = h->by_residual + rest->by_residual - now->by_residual +
-          find_nested_evidence (d, h, c) - find_nested_evidence (d, now, b);
+          find_nested_evidence (d, h, c) - own;
       if (isfinite (behind) && behind < part->by_residual)
         part->by_residual = MIN (part->by_residual, MAX (behind,
                 find_behind_here (d, l, part)));

@@ -15,6 +15,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gst/math/statistics.h"
+
 /* Log-likelihoods are summed as whole numbers: exact, and the same in any order. */
 #define STEPS 64
 /* A rim is straight when its corners are this near to a line, in squares. */
@@ -269,29 +271,16 @@ gather (ClothPoseFinder * finder, const ClothPatch * patch,
   }
 }
 
-static guint
-common_divisor (guint a, guint b)
-{
-  while (b) {
-    guint rest = a % b;
-
-    a = b;
-    b = rest;
-  }
-  return a;
-}
-
 /* Dots side by side may belong to another piece of cloth: takes them from all over. */
 static void
 scatter (ClothPoseFinder * finder)
 {
   const guint n = finder->found->len;
-  guint step = MAX (1, (guint) (0.618 * n)), at = 0;
+  const guint step = cloth_coprime_step (MAX (1, (guint) (0.618 * n)), n);
+  guint at = 0;
   gint32 rest = 0;
 
   g_array_set_size (finder->dots, n);
-  while (common_divisor (step, n) > 1)
-    step++;
   for (guint k = 0; k < n; k++, at = (at + step) % n)
     g_array_index (finder->dots, Dot, k) =
         g_array_index (finder->found, Dot, at);
