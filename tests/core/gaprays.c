@@ -52,9 +52,9 @@ test_cast (void)
 
   see (&seen, px, 0.09, 0, 0.09);
   cloth_rays_cast (rays, &front, &seen.view);
-  for (guint k = 0; k < 3; k++)
-    NEAR (rays->centre[k], centre[k], 1e-15);
   for (guint i = 0; i < 3; i++) {
+    for (guint k = 0; k < 3; k++)
+      NEAR (rays->centres[3 * i + k], centre[k], 1e-15);
     for (guint k = 0; k < 3; k++)
       NEAR (rays->directions[3 * i + k], directions[i][k], 1e-15);
     NEAR (rays->spreads[i], 0.3 / 900 * (i ? sqrt ((0.25 + 0.5) / 2) : 1),
@@ -119,7 +119,7 @@ test_lift (void)
   };
   g_autoptr (ClothRays) rays = cloth_rays_new (N), copy = cloth_rays_new (N);
   const gdouble v[3] = { 1, 3, 5 };
-  gdouble lifted[3 * N], across[3];
+  gdouble lifted[3 * N] = {[9] = 7, 8, 9 }, across[3];
   Seen seen;
 
   see (&seen, px, 1, 0, 1);
@@ -129,8 +129,10 @@ test_lift (void)
   NEAR (lifted[0], 4, 1e-14);
   NEAR (lifted[1], 1, 1e-14);
   NEAR (lifted[2], 0.5, 1e-14);
-  for (guint i = 3; i < 3 * N; i++)
+  for (guint i = 3; i < 9; i++)
     g_assert_true (isnan (lifted[i]));
+  for (guint i = 9; i < 12; i++)
+    g_assert_cmpfloat (lifted[i], ==, i - 2.);
 
   NEAR (cloth_rays_split (copy, 0, v, across), 4 / sqrt (2), 1e-14);
   NEAR (across[0], -1, 1e-14);
@@ -154,10 +156,10 @@ look (ClothRays * rays, gboolean above, const gdouble * places)
 {
   const gdouble eye[2][3] = { {0, -50, 0}, {0, 0, 50} };
 
-  memcpy (rays->centre, eye[above], sizeof eye[above]);
   for (guint i = 0; i < VERTICES; i++) {
     gdouble d[3], length;
 
+    memcpy (rays->centres + 3 * i, eye[above], sizeof eye[above]);
     for (guint k = 0; k < 3; k++)
       d[k] = places[3 * i + k] - eye[above][k];
     length = sqrt (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
@@ -239,6 +241,88 @@ test_observer (gconstpointer data)
     g_assert_cmpfloat (fabs (residuals[i]), <, 0.003);
 }
 
+/* Of the same sheet two rows are known and the third is seen from the side. All are drawn alike, so all settle as before. The scene's start is half a metre behind: the rays
+ * lead to where the rows that are known say the third one is; alone they lead to the scene's. */
+static void
+test_both (void)
+{
+  const ClothObserverOptions options = { 100, 0.5, 0.3, 0, 1 };
+  const gdouble behind = 0.5;
+  const guint first = 2 * COLUMNS, unseen = VERTICES - 1;
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothModel) model = cloth_model_new ();
+  g_autoptr (ClothScene) scene =
+      cloth_scene_new (cloth_topology_new_grid (COLUMNS, ROWS, 0.3f, 0.2f), FPS,
+      2);
+  g_autoptr (ClothObserver) observer = NULL;
+  g_autoptr (ClothRays) all = cloth_rays_new (VERTICES);
+  g_autoptr (ClothRays) rays = cloth_rays_new (VERTICES);
+  gfloat places[3 * VERTICES], residuals[3 * VERTICES], lifted[3 * VERTICES];
+  gfloat sigmas[VERTICES];
+  gdouble truth[3 * VERTICES] = { 0 };
+  guint n = 0;
+
+  g_assert_true (cloth_model_set (model, "damping.mass", 0, &error));
+  model->time_step = 0.0001;
+  for (guint i = 0; i < VERTICES; i++) {
+    truth[3 * i] = 0.1 * (i % COLUMNS);
+    truth[3 * i + 1] = 0.1 * (i / COLUMNS);
+    for (guint k = 0; k < 3; k++) {
+      scene->positions[3 * i + k] = truth[3 * i + k] + (k == 1 ? behind : 0.);
+      places[3 * i + k] = i < first ? (gfloat) truth[3 * i + k] : NAN;
+    }
+  }
+  observer = cloth_observer_new (scene, model, &options, &error);
+  g_assert_no_error (error);
+  look (all, FALSE, truth);
+  for (guint i = first; i < VERTICES; i++)
+    cloth_rays_take (rays, all, i);
+  for (guint frame = 0; frame < FRAMES + CLOTH_OBSERVER_LATENCY; frame++) {
+    cloth_observer_push_both (observer, (gdouble) frame / FPS, places, 0, rays);
+    if (cloth_observer_get_n_waiting (observer) <= CLOTH_OBSERVER_LATENCY)
+      continue;
+    g_assert_true (cloth_observer_pop (observer, residuals, &error));
+    for (guint i = 0; i < VERTICES; i++)
+      sigmas[i] = 7;
+    cloth_observer_get_lifted (observer, lifted, sigmas);
+    for (guint i = 0; i < VERTICES; i++) {
+      gdouble t = (gdouble) n / FPS, w = sqrt (75);
+      gdouble e = GRAVITY / 100 * (1 - exp (-5 * t) *
+          (cos (w * t) + 5 / w * sin (w * t)));
+
+      NEAR (residuals[3 * i + 2], e, 2e-3 * GRAVITY / 10 + 1e-6);
+      NEAR (lifted[3 * i + 1], truth[3 * i + 1], 0.01);
+      NEAR (sigmas[i], i < first ? 7 : 50e-5, 1e-5);
+    }
+    n++;
+  }
+  g_assert_cmpint (n, ==, FRAMES);
+
+  /* one is not seen at all */
+  cloth_observer_restart (observer);
+  for (guint i = 0; i < 3 * VERTICES; i++)
+    places[i] = NAN;
+  cloth_rays_drop (rays, unseen);
+  cloth_observer_push_both (observer, 0, places, 0, rays);
+  g_assert_true (cloth_observer_pop (observer, residuals, &error));
+  cloth_observer_get_lifted (observer, lifted, sigmas);
+  for (guint i = first; i < unseen; i++)
+    NEAR (lifted[3 * i + 1], truth[3 * i + 1] + behind, 0.01);
+  g_assert_true (isnan (residuals[3 * unseen]) && isnan (lifted[3 * unseen])
+      && isnan (sigmas[unseen]));
+
+  /* no ray at all: as of a mesh */
+  cloth_observer_restart (observer);
+  cloth_rays_clear (rays);
+  for (guint i = 0; i < 3 * first; i++)
+    places[i] = (gfloat) truth[i];
+  cloth_observer_push_both (observer, 0, places, 0, rays);
+  g_assert_true (cloth_observer_pop (observer, residuals, &error));
+  cloth_observer_get_lifted (observer, lifted, sigmas);
+  for (guint i = 0; i < VERTICES; i++)
+    g_assert_cmpint (isnan (lifted[3 * i]), ==, i >= first);
+}
+
 /* Simulating eleven days takes minutes; when it is to stop it comes back, and can begin anew. */
 static void
 test_stop (void)
@@ -296,6 +380,7 @@ main (int argc, char **argv)
       test_observer);
   g_test_add_data_func ("/gaprays/observer/above", GINT_TO_POINTER (TRUE),
       test_observer);
+  g_test_add_func ("/gaprays/observer/both", test_both);
   g_test_add_func ("/gaprays/observer/stop", test_stop);
   return g_test_run ();
 }

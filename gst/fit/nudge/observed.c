@@ -210,7 +210,8 @@ keep_rays (Maker * m, guint frame, guint camera, const ClothTriangulation * t,
       continue;
     lone[v] = (Lone) {
     frame, v,.spread = spread};
-    memcpy (lone[v].centre, m->rays->centre, sizeof lone[v].centre);
+    memcpy (lone[v].centre, m->rays->centres + 3 * (gsize) v,
+        sizeof lone[v].centre);
     memcpy (lone[v].direction, m->rays->directions + 3 * (gsize) v,
         sizeof lone[v].direction);
   }

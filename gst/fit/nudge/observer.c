@@ -35,9 +35,10 @@ G_STATIC_ASSERT (WINDOW == 2 * CLOTH_OBSERVER_LATENCY + 1);
 typedef struct
 {
   gdouble time, sigma;
-  gdouble *positions;           /* 3 a vertex, NaN when not seen */
-  ClothRays *rays;              /* they lie on; unless has_rays, of an older frame */
-  gboolean has_rays;
+  gdouble *places;              /* that were pushed: 3 a vertex, NaN when not seen */
+  gdouble *positions;           /* they, and places on rays */
+  ClothRays *rays;              /* unless has_rays, of an older frame */
+  gboolean has_places, has_rays;
 } Frame;
 
 struct _ClothObserver
@@ -77,8 +78,9 @@ struct _ClothObserver
  * x″ = M⁻¹F(x, x′) + g·m·(y − x) + 2ζ√g·m·(y′ − x′), m whether a vertex is seen. It starts
  * with the first frame that is pushed. The observer keeps nothing of @scene and @model.
  *
- * Frames of rays draw it across them only. Along them y is where the simulation would be
- * without springs, and y′ how fast; in the first frame, where the scene starts, at rest.
+ * Rays draw it across them only. Along them y is where the simulation would be
+ * without springs, and y′ how fast; in the first frame, at rest, where places that were seen
+ * beside them say that it is, else where the scene starts.
  *
  * Returns: (transfer full): an observer, or %NULL
  */
@@ -110,6 +112,7 @@ cloth_observer_new (const ClothScene * scene, const ClothModel * model,
   self->outliers = cloth_outliers_new (scene->topology);
   n = 3 * (gsize) self->n;
   for (guint i = 0; i < WINDOW; i++) {
+    self->ring[i].places = g_new (gdouble, n);
     self->ring[i].positions = g_new (gdouble, n);
     self->ring[i].rays = cloth_rays_new (self->n);
   }
@@ -140,6 +143,26 @@ cloth_observer_restart (ClothObserver * observer)
   observer->has_score = FALSE;
 }
 
+/* A frame without rays, of which no places are known unless there are @positions. */
+static Frame *
+push_frame (ClothObserver * self, gdouble time_s, const gfloat * positions,
+    gdouble sigma_m)
+{
+  Frame *frame = &self->ring[self->n_pushed++ % WINDOW];
+
+  frame->time = time_s;
+  frame->sigma = sigma_m;
+  frame->has_rays = frame->has_places = FALSE;
+  for (gsize i = 0; i < 3 * (gsize) self->n; i++) {
+    frame->positions[i] = positions ? positions[i] : NAN;
+    frame->has_places |= isfinite (frame->positions[i]);
+  }
+  cloth_outliers_remove (self->outliers, 0., frame->positions);
+  memcpy (frame->places, frame->positions,
+      3 * (gsize) self->n * sizeof *frame->places);
+  return frame;
+}
+
 /* @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting
  * @time_s: of the frame, seconds of the scene, later than the last one's
  * @positions: 3 numbers a vertex, metres; NaN when not seen
@@ -153,18 +176,10 @@ void
 cloth_observer_push (ClothObserver * observer, gdouble time_s,
     const gfloat * positions, gdouble sigma_m)
 {
-  Frame *frame = &observer->ring[observer->n_pushed++ % WINDOW];
-
-  frame->time = time_s;
-  frame->sigma = sigma_m;
-  frame->has_rays = FALSE;
-  for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
-    frame->positions[i] = positions[i];
-  cloth_outliers_remove (observer->outliers, 0., frame->positions);
+  push_frame (observer, time_s, positions, sigma_m);
 }
 
-/* @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting,
- *   all of rays
+/* @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting
  * @time_s: of the frame, seconds of the scene, later than the last one's
  * @rays: what one camera saw
  *
@@ -174,12 +189,30 @@ void
 cloth_observer_push_rays (ClothObserver * observer, gdouble time_s,
     const ClothRays * rays)
 {
-  Frame *frame = &observer->ring[observer->n_pushed++ % WINDOW];
+  Frame *frame = push_frame (observer, time_s, NULL, 0);
 
-  frame->time = time_s;
-  frame->sigma = 0;
   frame->has_rays = TRUE;
   cloth_rays_copy (frame->rays, rays);
+}
+
+/* @observer: an observer that has not more than %CLOTH_OBSERVER_LATENCY frames waiting
+ * @time_s: of the frame, seconds of the scene, later than the last one's
+ * @positions: as of cloth_observer_push ()
+ * @sigma_m: likewise
+ * @rays: of vertices that one camera saw; that, then, is all that is known of them
+ *
+ * Gives it a frame of which some places are known, and others across a ray.
+ */
+void
+cloth_observer_push_both (ClothObserver * observer, gdouble time_s,
+    const gfloat * positions, gdouble sigma_m, const ClothRays * rays)
+{
+  Frame *frame = push_frame (observer, time_s, positions, sigma_m);
+
+  for (guint v = 0; v < observer->n; v++)
+    frame->has_rays |= cloth_rays_has (rays, v);
+  if (frame->has_rays)
+    cloth_rays_copy (frame->rays, rays);
 }
 
 /* @observer: an observer
@@ -235,16 +268,66 @@ find_velocities (ClothObserver * self, gdouble * velocity)
   }
 }
 
-/* Where the cloth would be at the frame that is popped if nothing drew it. */
+/* Closes the holes of the first frame by thin plates, or by neighbours where plates can't: at their
+ * places, or, with @start, as far from these as there. */
 static void
-look_ahead (ClothObserver * self, gdouble time)
+fill_start (ClothObserver * self, gdouble sigma, const gdouble * start,
+    gdouble * positions)
+{
+  const gsize n = self->n;
+  const ClothFillParameters parameters = { CLOTH_FILL_PLATE,
+    sigma > 0 ? sigma : CLOTH_FILL_NOISE, CLOTH_FILL_MAX_SIGMA, 0., 0.
+  };
+  g_autoptr (ClothFill) fill = cloth_fill_new (self->topology, NULL,
+      &parameters);
+  g_autoptr (ClothHold) hold = cloth_hold_new (self->topology);
+  g_autofree gfloat *places = g_new (gfloat, 3 * n);
+  g_autofree guint8 *states = g_malloc (n);
+  const ClothMeshFrame from = { places, states, NULL };
+  ClothMeshFrame to;
+  ClothFillCounts counts;
+  const gfloat *filled;
+
+  for (gsize i = 0; i < 3 * n; i++)
+    places[i] = (gfloat) positions[i];
+  for (gsize i = 0; i < n; i++)
+    states[i] = isnan (places[3 * i]) ? CLOTH_VERTEX_UNSEEN :
+        CLOTH_VERTEX_MEASURED;
+  cloth_fill_run (fill, 0., &from, &to, &counts);
+  for (gsize i = 0; i < 3 * n; i++)
+    places[i] = to.positions[i] - (start ? (gfloat) start[i] : 0.f);
+  filled = cloth_hold_apply (hold, places);
+  for (gsize i = 0; i < 3 * n; i++)
+    if (isnan (positions[i]))
+      positions[i] = filled[i] + (start ? start[i] : 0.);
+}
+
+/* Where the first frame's rays may lead to, and what nobody saw of it may be: what else was seen tells
+ * better than the scene, which may not know where its cloth starts. */
+static void
+look_at_start (ClothObserver * self, const Frame * frame)
 {
   const gsize n = 3 * (gsize) self->n;
+
+  memset (self->ahead_speeds, 0, n * sizeof *self->ahead_speeds);
+  if (!frame->has_places) {
+    memcpy (self->ahead, self->scene_start, n * sizeof *self->ahead);
+    return;
+  }
+  memcpy (self->ahead, frame->places, n * sizeof *self->ahead);
+  fill_start (self, frame->sigma, self->scene_start, self->ahead);
+}
+
+/* Where the cloth would be at the frame that is popped if nothing drew it. */
+static void
+look_ahead (ClothObserver * self, const Frame * frame)
+{
+  const gsize n = 3 * (gsize) self->n;
+  const gdouble time = frame->time;
   gdouble last, dt;
 
   if (self->n_popped == 0) {
-    memcpy (self->ahead, self->scene_start, n * sizeof *self->ahead);
-    memset (self->ahead_speeds, 0, n * sizeof *self->ahead_speeds);
+    look_at_start (self, frame);
     return;
   }
   last = self->ring[(self->n_popped - 1) % WINDOW].time;
@@ -262,6 +345,8 @@ look_ahead (ClothObserver * self, gdouble time)
 static void
 lift (ClothObserver * self, Frame * frame, const gdouble * reference)
 {
+  memcpy (frame->positions, frame->places,
+      3 * (gsize) self->n * sizeof *frame->positions);
   cloth_rays_lift (frame->rays, reference, frame->positions);
   cloth_outliers_remove (self->outliers, 0., frame->positions);
 }
@@ -274,6 +359,8 @@ lift_waiting (ClothObserver * self, gdouble at)
     Frame *frame = &self->ring[i % WINDOW];
     gdouble dt = frame->time - at;
 
+    if (!frame->has_rays)
+      continue;
     for (gsize k = 0; k < 3 * (gsize) self->n; k++)
       self->reference[k] = self->ahead[k] + dt * self->ahead_speeds[k];
     lift (self, frame, self->reference);
@@ -282,13 +369,17 @@ lift_waiting (ClothObserver * self, gdouble at)
 
 /* Along the rays nothing was seen to move: there the speeds are the simulation's. */
 static void
-take_speeds_along (const ClothObserver * self, const ClothRays * rays,
+take_speeds_along (const ClothObserver * self, const Frame * frame,
     const gdouble * speeds, gdouble * velocity)
 {
+  const ClothRays *rays = frame->rays;
+
   for (guint v = 0; v < self->n; v++) {
     gdouble *at = velocity + 3 * (gsize) v, across[3];
     gdouble along = cloth_rays_split (rays, v, speeds + 3 * (gsize) v, across);
 
+    if (isfinite (frame->places[3 * (gsize) v]) && !cloth_rays_has (rays, v))
+      continue;
     cloth_rays_split (rays, v, at, at);
     for (guint k = 0; k < 3; k++)
       at[k] += along * rays->directions[3 * (gsize) v + k];
@@ -300,14 +391,14 @@ static gdouble
 find_spread (const Frame * frame, guint vertex)
 {
   const gdouble *p = frame->positions + 3 * (gsize) vertex;
-  const gdouble *c = frame->rays->centre;
+  const gdouble *c = frame->rays->centres + 3 * (gsize) vertex;
 
   return frame->rays->spreads[vertex] *
       sqrt ((p[0] - c[0]) * (p[0] - c[0]) + (p[1] - c[1]) * (p[1] - c[1]) +
       (p[2] - c[2]) * (p[2] - c[2]));
 }
 
-/* That of all vertices that are seen, RMS. */
+/* That of all vertices that have a ray, RMS. */
 static gdouble
 find_usual_spread (const ClothObserver * self, const Frame * frame)
 {
@@ -325,57 +416,27 @@ find_usual_spread (const ClothObserver * self, const Frame * frame)
   return n ? sqrt (sum / n) : 0;
 }
 
-/* Closes the holes of the first frame by thin plates, or by neighbours where plates can't. */
-static void
-fill_start (ClothObserver * self, gdouble sigma)
-{
-  const gsize n = self->n;
-  const ClothFillParameters parameters = { CLOTH_FILL_PLATE,
-    sigma > 0 ? sigma : CLOTH_FILL_NOISE, CLOTH_FILL_MAX_SIGMA, 0., 0.
-  };
-  g_autoptr (ClothFill) fill = cloth_fill_new (self->topology, NULL,
-      &parameters);
-  g_autoptr (ClothHold) hold = cloth_hold_new (self->topology);
-  g_autofree gfloat *places = g_new (gfloat, 6 * n);
-  g_autofree guint8 *states = g_malloc (2 * n);
-  ClothMeshFrame from = { places, states, NULL };
-  ClothMeshFrame to = { places + 3 * n, states + n, NULL };
-  ClothFillCounts counts;
-  const gfloat *filled;
-
-  for (gsize i = 0; i < 3 * n; i++)
-    places[i] = (gfloat) self->state[i];
-  for (gsize i = 0; i < n; i++)
-    states[i] = isnan (places[3 * i]) ? CLOTH_VERTEX_UNSEEN :
-        CLOTH_VERTEX_MEASURED;
-  cloth_fill_run (fill, 0., &from, &to, &counts);
-  filled = cloth_hold_apply (hold, to.positions);
-  for (gsize i = 0; i < 3 * n; i++)
-    if (isnan (self->state[i]))
-      self->state[i] = filled[i];
-}
-
 /* Both copies where the first frame saw the cloth: without its noise where the cloth is smooth, since a
  * sheet with folds as sharp as its mesh bursts. Where it saw nothing at all they start with the scene. */
 static void
 begin (ClothObserver * self, const Frame * frame, const gdouble * velocity)
 {
   const gsize n = 3 * (gsize) self->n;
-  const gdouble sigma = frame->has_rays ? find_usual_spread (self, frame) :
-      frame->sigma;
+  const gdouble sigma = frame->has_places ? frame->sigma :
+      find_usual_spread (self, frame);
   g_autofree gdouble *seen = g_new (gdouble, self->n);
   gboolean any = FALSE;
 
   for (gsize i = 0; i < n; i++) {
     self->state[i] = frame->has_rays && isnan (frame->positions[i]) ?
-        self->scene_start[i] : frame->positions[i];
+        self->ahead[i] : frame->positions[i];
     self->speeds[i] = isfinite (velocity[i]) ? velocity[i] : 0;
     seen[i / 3] = isfinite (frame->positions[i]);
     any |= seen[i / 3] != 0.;
   }
   if (any) {
     cloth_start_smooth (self->topology, seen, sigma, self->state, self->speeds);
-    fill_start (self, sigma);
+    fill_start (self, sigma, NULL, self->state);
   } else {
     memcpy (self->state, self->scene_start, n * sizeof *self->state);
   }
@@ -442,7 +503,7 @@ add_to_window (ClothObserver * self, const Frame * frame)
 
     for (guint k = 0; k < 3; k++)
       away[k] = frame->positions[3 * v + k] - self->free_state[3 * v + k];
-    if (frame->has_rays)
+    if (frame->has_rays && cloth_rays_has (frame->rays, (guint) v))
       cloth_rays_split (frame->rays, (guint) v, away, away);
     square = away[0] * away[0] + away[1] * away[1] + away[2] * away[2];
     if (isfinite (square)) {
@@ -474,12 +535,12 @@ cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
   gdouble gain = self->options.gain;
 
   if (frame->has_rays) {
-    look_ahead (self, frame->time);
+    look_ahead (self, frame);
     lift_waiting (self, frame->time);
   }
   find_velocities (self, velocity);
   if (frame->has_rays)
-    take_speeds_along (self, frame->rays, self->ahead_speeds, velocity);
+    take_speeds_along (self, frame, self->ahead_speeds, velocity);
   if (self->n_popped == 0) {
     begin (self, frame, velocity);
   } else {
@@ -521,10 +582,11 @@ cloth_observer_get_drawn (const ClothObserver * observer, gfloat * positions)
     positions[i] = (gfloat) observer->state[i];
 }
 
-/* @observer: an observer that has popped a frame of rays, and got none since
- * @positions: (out caller-allocates): where that frame has its vertices: on their rays,
+/* @observer: an observer that has popped a frame, and got none since
+ * @positions: (out caller-allocates): where that frame has its vertices; those on rays
  *   as far away as the simulation is; 3 numbers a vertex, metres, NaN when not seen
- * @sigmas: (out caller-allocates): standard deviation of each across its ray, metres
+ * @sigmas: (inout): standard deviation of each across its ray, metres. Where no camera saw a vertex
+ *   alone they stay; NaN where nothing was seen at all
  */
 void
 cloth_observer_get_lifted (const ClothObserver * observer, gfloat * positions,
@@ -535,7 +597,10 @@ cloth_observer_get_lifted (const ClothObserver * observer, gfloat * positions,
   for (gsize i = 0; i < 3 * (gsize) observer->n; i++)
     positions[i] = (gfloat) frame->positions[i];
   for (guint i = 0; i < observer->n; i++)
-    sigmas[i] = (gfloat) find_spread (frame, i);
+    if (frame->has_rays && cloth_rays_has (frame->rays, i))
+      sigmas[i] = (gfloat) find_spread (frame, i);
+    else if (isnan (frame->places[3 * (gsize) i]))
+      sigmas[i] = NAN;
 }
 
 /* @observer: an observer
@@ -571,6 +636,7 @@ cloth_observer_free (ClothObserver * observer)
   if (!observer)
     return;
   for (guint i = 0; i < WINDOW; i++) {
+    g_free (observer->ring[i].places);
     g_free (observer->ring[i].positions);
     cloth_rays_free (observer->ring[i].rays);
   }

@@ -55,6 +55,8 @@ void cloth_observer_push (ClothObserver * observer, gdouble time_s,
     const gfloat * positions, gdouble sigma_m);
 void cloth_observer_push_rays (ClothObserver * observer, gdouble time_s,
     const ClothRays * rays);
+void cloth_observer_push_both (ClothObserver * observer, gdouble time_s,
+    const gfloat * positions, gdouble sigma_m, const ClothRays * rays);
 guint cloth_observer_get_n_waiting (const ClothObserver * observer);
 gboolean cloth_observer_pop (ClothObserver * observer, gfloat * residuals,
     GError ** error);

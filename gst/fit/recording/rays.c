@@ -1,4 +1,4 @@
-/* What one camera saw of a cloth's vertices: rays, and points on them.
+/* What single cameras saw of a cloth's vertices: rays, and points on them.
  *
  * SPDX-License-Identifier: LGPL-2.1-or-later */
 #include "gst/fit/recording/rays.h"
@@ -18,6 +18,7 @@ cloth_rays_new (guint n)
   ClothRays *rays = g_new0 (ClothRays, 1);
 
   rays->n = n;
+  rays->centres = g_new0 (gdouble, 3 * (gsize) n);
   rays->directions = g_new (gdouble, 3 * (gsize) n);
   rays->spreads = g_new (gdouble, n);
   rays->scratch = g_new (gdouble, 6 * (gsize) n);
@@ -32,10 +33,30 @@ cloth_rays_new (guint n)
 void
 cloth_rays_clear (ClothRays * rays)
 {
-  for (gsize i = 0; i < 3 * (gsize) rays->n; i++)
-    rays->directions[i] = NAN;
   for (guint i = 0; i < rays->n; i++)
-    rays->spreads[i] = NAN;
+    cloth_rays_drop (rays, i);
+}
+
+/* @rays: rays
+ * @vertex: of which there is to be none
+ */
+void
+cloth_rays_drop (ClothRays * rays, guint vertex)
+{
+  for (guint k = 0; k < 3; k++)
+    rays->directions[3 * (gsize) vertex + k] = NAN;
+  rays->spreads[vertex] = NAN;
+}
+
+/* @rays: rays
+ * @vertex: which
+ *
+ * Returns: whether it was seen
+ */
+gboolean
+cloth_rays_has (const ClothRays * rays, guint vertex)
+{
+  return !isnan (rays->directions[3 * (gsize) vertex]);
 }
 
 /* @x, @y: X/Z and Y/Z in the camera's frame, @c: their covariance xx, xy, yy. A step of
@@ -67,11 +88,11 @@ cloth_rays_cast (ClothRays * rays, const ClothCamera * camera,
     const ClothTriangulateView * view)
 {
   gsize n = rays->n;
-  gdouble *x = rays->scratch, *y = x + n, *j = y + n;
+  gdouble *x = rays->scratch, *y = x + n, *j = y + n, centre[3];
 
   /* camera's centre: −Rᵀt */
   for (guint k = 0; k < 3; k++)
-    rays->centre[k] = -(camera->R[k] * camera->t[0] +
+    centre[k] = -(camera->R[k] * camera->t[0] +
         camera->R[3 + k] * camera->t[1] + camera->R[6 + k] * camera->t[2]);
   cloth_camera_undistort_points (camera, (guint) n, view->x, view->y, x, y, j);
   for (guint i = 0; i < n; i++) {
@@ -83,8 +104,24 @@ cloth_rays_cast (ClothRays * rays, const ClothCamera * camera,
       vx * vx * a + 2. * vx * vy * b + vy * vy * c
     };
 
+    memcpy (rays->centres + 3 * (gsize) i, centre, sizeof centre);
     cast_one (rays, camera, i, x[i], y[i], covariance);
   }
+}
+
+/* @rays: rays of as many vertices as @from
+ * @from: rays
+ * @vertex: of which the ray is taken over
+ */
+void
+cloth_rays_take (ClothRays * rays, const ClothRays * from, guint vertex)
+{
+  const gsize at = 3 * (gsize) vertex;
+
+  memcpy (rays->centres + at, from->centres + at, 3 * sizeof *rays->centres);
+  memcpy (rays->directions + at, from->directions + at,
+      3 * sizeof *rays->directions);
+  rays->spreads[vertex] = from->spreads[vertex];
 }
 
 /* @to: rays of as many vertices
@@ -93,7 +130,8 @@ cloth_rays_cast (ClothRays * rays, const ClothCamera * camera,
 void
 cloth_rays_copy (ClothRays * to, const ClothRays * from)
 {
-  memcpy (to->centre, from->centre, sizeof to->centre);
+  memcpy (to->centres, from->centres,
+      3 * (gsize) from->n * sizeof *to->centres);
   memcpy (to->directions, from->directions,
       3 * (gsize) from->n * sizeof *to->directions);
   memcpy (to->spreads, from->spreads, from->n * sizeof *to->spreads);
@@ -120,8 +158,8 @@ cloth_rays_split (const ClothRays * rays, guint vertex, const gdouble v[3],
 
 /* @rays: rays
  * @reference: where the vertices may be, 3 numbers a vertex, metres; NaN when not known
- * @positions: (out caller-allocates): the place on each ray that is nearest to its
- *   reference; NaN where one of them is missing, or the reference lies behind the camera
+ * @positions: (inout): the place on each ray that is nearest to its reference; NaN where that is
+ *   missing, or lies behind the camera. Of vertices without a ray they stay
  *
  * Across the rays a position is what the camera saw, with a standard deviation of its
  * distance from the camera times the ray's spread; along them it is the reference's.
@@ -132,13 +170,15 @@ cloth_rays_lift (const ClothRays * rays, const gdouble * reference,
 {
   for (guint i = 0; i < rays->n; i++) {
     const gdouble *d = rays->directions + 3 * (gsize) i;
+    const gdouble *c = rays->centres + 3 * (gsize) i;
     gdouble v[3], along;
 
-    cloth_vec3_subtract (reference + 3 * (gsize) i, rays->centre, v);
+    if (!cloth_rays_has (rays, i))
+      continue;
+    cloth_vec3_subtract (reference + 3 * (gsize) i, c, v);
     along = cloth_rays_split (rays, i, v, v);
     for (guint k = 0; k < 3; k++)
-      positions[3 * (gsize) i + k] = along > 0. ?
-          rays->centre[k] + along * d[k] : NAN;
+      positions[3 * (gsize) i + k] = along > 0. ? c[k] + along * d[k] : NAN;
   }
 }
 
@@ -149,6 +189,7 @@ cloth_rays_free (ClothRays * rays)
 {
   if (!rays)
     return;
+  g_free (rays->centres);
   g_free (rays->directions);
   g_free (rays->spreads);
   g_free (rays->scratch);
