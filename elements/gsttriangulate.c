@@ -16,6 +16,9 @@
  * known once the pictures of a camera say whose they are: of one whose first picture doesn't, the pictures
  * that do make no mesh.
  *
+ * Each mesh carries what its cameras saw, as a #GstClothView of each: `clothgap` and `clothfit` see
+ * by it what one camera alone saw.
+ *
  * The mesh's frame rate is the cameras'. While they differ it is the last one that was
  * sent, so that a camera joining late doesn't change it in mid-stream; 0/1, variable, when
  * they differ from the start. Frames come with the times of their pictures all the same.
@@ -600,7 +603,7 @@ gst_triangulate_see (GstTriangulate * self, guint index, GstBuffer * view,
       && gst_triangulate_board_see (self->board, *unpacked, seen);
 }
 
-/* The same of a view that is joined. A damaged one is as good as none. */
+/* The same of a view that is joined. A damaged one is as good as none, and is not unpacked. */
 static GstFlowReturn
 gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
     GstBuffer ** unpacked, GstTriangulateSeen * seen, gboolean * carries)
@@ -609,6 +612,7 @@ gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
 
   *carries = gst_triangulate_see (self, index, view, unpacked, seen, &error);
   if (error) {
+    gst_clear_buffer (unpacked);
     g_prefix_error (&error, "sink_%u: ", index);
     return gst_cloth_damage_add (&self->settings.damage, GST_ELEMENT (self),
         error);
@@ -620,6 +624,7 @@ gst_triangulate_look (GstTriangulate * self, guint index, GstBuffer * view,
     return GST_FLOW_OK;
   /* those before it were right, so it is this one that isn't */
   *carries = FALSE;
+  gst_clear_buffer (unpacked);
   g_set_error (&error, GST_CLOTH_ERROR, GST_CLOTH_ERROR_VALUE,
       "sink_%u: it is of another camera or pattern than those before it",
       index);
@@ -696,6 +701,45 @@ gst_triangulate_look_ahead (GstClothSync * sync, GstBuffer ** heads, guint n)
   return moved ? GST_AGGREGATOR_FLOW_NEED_DATA : GST_FLOW_OK;
 }
 
+/* The time of a picture by its camera's clock, in the mesh's segment. */
+static GstClockTime
+gst_triangulate_find_time (GstTriangulate * self, guint index,
+    GstBuffer * picture)
+{
+  const GstSegment *to =
+      &GST_AGGREGATOR_PAD (GST_AGGREGATOR_SRC_PAD (self))->segment;
+  const guint64 time =
+      gst_segment_to_running_time (gst_cloth_sync_get_segment (GST_CLOTH_SYNC
+          (self), index), GST_FORMAT_TIME, GST_BUFFER_PTS (picture));
+
+  return GST_CLOCK_TIME_IS_VALID (time) ?
+      gst_segment_position_from_running_time (to, GST_FORMAT_TIME, time) :
+      GST_CLOCK_TIME_NONE;
+}
+
+/* Puts what the cameras saw on their mesh, pictures that show nothing too: nothing was seen then. */
+static void
+gst_triangulate_add_views (GstTriangulate * self, GstBuffer ** views,
+    GstBuffer ** unpacked, const GstTriangulateSeen * carried, guint n,
+    GstBuffer * mesh)
+{
+  for (guint i = 0; i < n; i++) {
+    const GstTriangulateView *view = &self->view[i];
+    GstBuffer *observation;
+
+    if (!views[i] || view->camera < 0 || (view->observations && !unpacked[i])) {
+      continue;
+    }
+    observation = view->observations ? gst_buffer_copy (views[i]) :
+        gst_cloth_observations_pack (views[i]);
+    GST_BUFFER_PTS (observation) =
+        gst_triangulate_find_time (self, i, views[i]);
+    gst_buffer_add_cloth_view_meta (mesh,
+        gst_cloth_view_new (self->rig->cameras[view->camera].name,
+            view->carries ? carried[i].sequence : 0, observation));
+  }
+}
+
 static GstFlowReturn
 gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
     guint64 mask, GstClockTime pts, GstClockTime duration, GstBuffer ** out)
@@ -767,6 +811,9 @@ gst_triangulate_process_set (GstClothSync * sync, GstBuffer ** views, guint n,
         &seen[camera]);
   }
   ret = gst_triangulate_make_mesh (self, seen, out);
+  if (ret == GST_FLOW_OK) {
+    gst_triangulate_add_views (self, views, unpacked, carried, n, *out);
+  }
   if (ret == GST_FLOW_OK && stamp) {
     gst_buffer_add_reference_timestamp_meta (*out, stamp->reference,
         stamp->timestamp, stamp->duration);

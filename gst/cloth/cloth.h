@@ -14,3 +14,4 @@
 #include <gst/cloth/gstclothobservations.h>
 #include <gst/cloth/gstclothgap.h>
 #include <gst/cloth/gstclothuv.h>
+#include <gst/cloth/gstclothview.h>

@@ -274,12 +274,14 @@ make_mesh (guint number)
           uv, 2));
   gst_buffer_add_cloth_uv_meta (buffer, gst_cloth_uv_new ("cam1", number, 1, 1,
           uv, 2));
+  gst_buffer_add_cloth_view_meta (buffer, gst_cloth_view_new ("cam0", number,
+          gst_buffer_new ()));
   GST_BUFFER_PTS (buffer) = gst_util_uint64_scale (number, GST_SECOND, 25);
   GST_BUFFER_DURATION (buffer) = GST_SECOND / 25;
   return buffer;
 }
 
-/* The gap and the maps must still be those of the mesh they lie on. */
+/* The gap, the maps and the view must still be those of the mesh they lie on. */
 static void
 judge_gap (GstSample * sample, const gchar * verdicts[])
 {
@@ -288,13 +290,14 @@ judge_gap (GstSample * sample, const gchar * verdicts[])
   GstClothUV *uvs[2] = { gst_buffer_get_nth_cloth_uv (buffer, 0),
     gst_buffer_get_cloth_uv (buffer, "cam1")
   };
+  GstClothView *view = gst_buffer_get_cloth_view (buffer, "cam0");
   g_autoptr (GstClothMesh) mesh = gst_cloth_mesh_from_buffer (buffer, NULL);
 
   if (!mesh)
     verdicts[0] = "wrong";
-  else if (!gap && !uvs[0] && !uvs[1])
+  else if (!gap && !uvs[0] && !uvs[1] && !view)
     verdicts[0] = "lost";
-  else if (!gap || !uvs[0] || !uvs[1] || uvs[0] == uvs[1])
+  else if (!gap || !uvs[0] || !uvs[1] || uvs[0] == uvs[1] || !view)
     verdicts[0] = "wrong";
   else
     verdicts[0] = gst_cloth_gap_get_sequence (gap) ==
@@ -302,6 +305,8 @@ judge_gap (GstSample * sample, const gchar * verdicts[])
         && gst_cloth_uv_get_sequence (uvs[0]) ==
         gst_cloth_mesh_get_sequence (mesh)
         && gst_cloth_uv_get_sequence (uvs[1]) ==
+        gst_cloth_mesh_get_sequence (mesh)
+        && gst_cloth_view_get_sequence (view) ==
         gst_cloth_mesh_get_sequence (mesh)
         && gst_cloth_gap_get_residuals (gap, NULL)[0] ==
         0.001f * (gfloat) gst_cloth_mesh_get_sequence (mesh) ? "kept" : "wrong";
@@ -336,7 +341,7 @@ GST_START_TEST (test_page)
       g_string_new ("| chain | of a picture | capture "
       "time |\n|---|---|---|\n");
   g_autoptr (GString) gaps =
-      g_string_new ("| chain | gap, maps |\n|---|---|\n");
+      g_string_new ("| chain | gap, maps, views |\n|---|---|\n");
   g_autofree gchar *text = NULL;
   g_autoptr (GError) error = NULL;
 

@@ -208,6 +208,17 @@ class Prints(unittest.TestCase):
         self.assertIsNone(GstCloth.buffer_get_nth_cloth_uv(mesh, 2))
         self.assertIsNone(GstCloth.buffer_get_cloth_uv(mesh, 'middle'))
 
+    def test_view(self):
+        mesh, picture, seen = Gst.Buffer.new(), Gst.Buffer.new(), Gst.Buffer.new()
+        GstCloth.buffer_add_cloth_saddles_meta(picture, GstCloth.Saddles.new('', 3, [], []))
+        GstCloth.buffer_add_cloth_view_meta(
+            mesh, GstCloth.View.new('left', 3, GstCloth.observations_pack(picture)))
+        view = GstCloth.buffer_get_cloth_view(mesh.copy(), 'left')
+        self.assertEqual((view.get_camera(), view.get_sequence()), ('left', 3))
+        self.assertTrue(GstCloth.observations_unpack(view.get_observation(), seen))
+        self.assertEqual(GstCloth.buffer_get_cloth_saddles(seen).get_sequence(), 3)
+        self.assertIsNone(GstCloth.buffer_get_nth_cloth_view(mesh, 1))
+
 
 class Streams(unittest.TestCase):
     """The layouts of docs/streams.md, written here by struct."""
