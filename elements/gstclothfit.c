@@ -18,7 +18,8 @@
  * The stream time is the scene's: what comes before its first or after its last frame is left
  * out. A frame needs the three frames behind it, so buffers leave that much later. What one camera saw
  * draws the cloth across its rays only; along them the simulation is believed. Join two or more cameras
- * by `triangulate`.
+ * by `triangulate`. Its meshes carry what each camera saw (#GstClothView), and when `rig` has these cameras,
+ * what one of them alone saw of a vertex that the mesh has not draws it likewise.
  *
  * ## Messages
  * `clothfit/score`, for each window: `time` and `duration` (nanoseconds of stream time), `rms`
@@ -32,7 +33,8 @@
  * what it is on a mesh twice as fine, and the standard deviation of that as a number of the cloth; NaN: not known)
  * and `at-end` (boolean: it came to an end of its range)), and how far the cloth let go in windows was off before and after
  * (double, metres): `windows-before`, `windows-after`. The whole stream is fitted then, which takes its
- * time; `gst-cloth-fit-1.0` does the same for takes, and tells more.
+ * time: its meshes, or, when `rig` has their cameras, what these saw. `gst-cloth-fit-1.0` does the same for
+ * takes, and tells more.
  *
  * After a flush, or when a new segment goes back in time, it starts anew.
  *
@@ -311,14 +313,16 @@ fit (GstClothFit * self, GError ** error)
   const GstFollowSettings *settings = gst_cloth_follow_get_settings (follow);
   g_autoptr (GstFollowRecord) record = g_steal_pointer (&self->record);
   g_autoptr (ClothTake) take = NULL;
+  g_autoptr (ClothObservations) seen = NULL;
   ClothSynthesisInput input = { inputs->take, self->observations };
   ClothSynthesisOptions options;
 
   if (record) {
-    take = gst_follow_record_finish (record, error);
+    take = gst_follow_record_finish (record, &seen, error);
     if (!take)
       return NULL;
-    input.take = take;
+    input = (ClothSynthesisInput) {
+    take, seen};
   } else if (!self->observations) {
     /* the take of location is the scene; what it has of positions is another recording */
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING,

@@ -68,15 +68,38 @@ gboolean gst_follow_view_check_seen (const GstFollowView * view,
     GstElement * element);
 void gst_follow_view_free (GstFollowView * view);
 
+/* The cameras that a mesh stream was made of. */
+typedef struct _GstFollowCameras GstFollowCameras;
+
+/* Returns: NULL after an error was posted. @rig_file: of which there must be one */
+GstFollowCameras *gst_follow_cameras_new (GstElement * element,
+    const gchar * rig_file, const ClothTopology * topology);
+/* The rig that is known for observations, or NULL; to be freed. */
+gchar *gst_follow_find_rig (const GstFollowSettings * settings);
+/* What single cameras saw of the vertices that @mesh has not, and its @buffer tells: rays, which belong to
+ * @cameras. As of gst_follow_view_read (). */
+const ClothRays *gst_follow_cameras_read (GstFollowCameras * cameras,
+    GstElement * element, GstBuffer * buffer, const GstClothMesh * mesh,
+    GError ** damage);
+void gst_follow_cameras_restart (GstFollowCameras * cameras);
+void gst_follow_cameras_free (GstFollowCameras * cameras);
+
 typedef struct _GstFollowRecord GstFollowRecord;
 
-GstFollowRecord *gst_follow_record_new (const ClothTakeInfo * info,
+GstFollowRecord *gst_follow_record_new (ClothTake * take,
     const ClothScene * scene, GError ** error);
 gboolean gst_follow_record_append (GstFollowRecord * record,
     gdouble time_s, const gfloat * positions, const guint8 * states,
     const gfloat * covariances, GError ** error);
-/* Ends the take; the record can then only be freed, after what is returned. */
-ClothTake *gst_follow_record_finish (GstFollowRecord * record, GError ** error);
+/* Adds what the cameras saw of the frame that was appended last. @segment: of the stream. @time_s: of the frame.
+ * A recording that has this is one of observations, and its positions don't count. */
+gboolean gst_follow_record_see (GstFollowRecord * record,
+    const GstFollowCameras * cameras, GstBuffer * buffer,
+    const GstSegment * segment, gdouble time_s, GError ** error);
+/* Ends the take; the record can then only be freed, after what is returned. @observations: (out): what
+ * cameras saw, as it is read from any take; NULL where none did */
+ClothTake *gst_follow_record_finish (GstFollowRecord * record,
+    ClothObservations ** observations, GError ** error);
 void gst_follow_record_free (GstFollowRecord * record);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (GstFollowRecord, gst_follow_record_free)

@@ -48,12 +48,15 @@ typedef struct
   gint fps_n, fps_d;            /* 0/1: not known */
   guint n_vertices;             /* 0: no caps yet */
   GstFollowView *view;          /* of observations; NULL: meshes */
+  GstFollowCameras *cameras;    /* that meshes were made of; NULL: not known */
   GQueue waiting;
   guint64 n_frames;             /* that came in since the beginning */
   guint64 n_at_rate;            /* they and damaged packets, since the rate is this one */
   gdouble before;               /* how long those before that took, seconds */
   gdouble last_time;
   gboolean new_segment, warned;
+  gboolean has_views;           /* whether a mesh of this recording had */
+  gboolean warned_views;
   GstCaps *refused;             /* NULL: none */
   gfloat *residuals, *sigmas;
   gfloat *positions;            /* as recorded by one camera */
@@ -88,8 +91,9 @@ static const GstClothProperty properties[] = {
     "clamps, obstacles, gravity; for a stream from a take, that take",
     G_TYPE_STRING, SETTING (location), GST_PARAM_MUTABLE_READY},
   {"rig", "Rig",
-    "Calibration file (rig.json) that has the camera of the observations; by "
-    "default the one in the folder of location",
+    "Calibration file (rig.json) that has the camera of the observations, or the "
+    "cameras that the meshes were made of; by default the one in the folder of "
+    "location",
     G_TYPE_STRING, SETTING (rig), GST_PARAM_MUTABLE_READY},
   {"camera", "Camera",
     "Name in the rig of the camera of the observations; by default the one that "
@@ -171,6 +175,9 @@ restart (Follow * self)
     cloth_observer_restart (self->observer);
   if (self->view)
     gst_follow_view_restart (self->view);
+  if (self->cameras)
+    gst_follow_cameras_restart (self->cameras);
+  self->has_views = FALSE;
   if (self->klass->restart)
     self->klass->restart (GST_CLOTH_FOLLOW (self->element));
   self->n_frames = self->n_at_rate = 0;
@@ -261,7 +268,11 @@ leave (Follow * self, const Waiting * waiting, GstBuffer * buffer)
     frame.states = gst_cloth_mesh_get_states (mesh, NULL);
     frame.covariances = gst_cloth_mesh_get_covariances (mesh, NULL);
     find_sigmas (self, frame.covariances);
+    /* where one camera alone saw a vertex, across its ray */
+    if (self->cameras)
+      cloth_observer_get_lifted (self->observer, self->positions, self->sigmas);
   }
+  frame.buffer = buffer;
   good = !self->klass->record
       || self->klass->record (GST_CLOTH_FOLLOW (self->element), &frame);
   /* that it can be written to */
@@ -269,6 +280,7 @@ leave (Follow * self, const Waiting * waiting, GstBuffer * buffer)
   if (good) {
     frame.positions = frame.covariances = NULL;
     frame.states = NULL;
+    frame.buffer = NULL;
     return self->klass->leave (GST_CLOTH_FOLLOW (self->element), buffer,
         &frame);
   }
@@ -444,6 +456,63 @@ tell_picture (Follow * self, gdouble time)
       points);
 }
 
+/* Opens the cameras that a mesh was made of; FALSE when an error was posted. Without a rig its places are all
+ * that is known, and so they are when the scene's vertices are not numbered as those of a grid. */
+static gboolean
+open_cameras (Follow * self)
+{
+  const ClothTopology *topology = self->inputs.scene->topology;
+  g_autofree gchar *rig_file = gst_follow_find_rig (&self->settings);
+
+  if (self->cameras)
+    return TRUE;
+  if (!rig_file || topology->columns < 2 || topology->rows < 2) {
+    GST_INFO_OBJECT (self->element, "no %s: what one camera alone saw is not "
+        "used", rig_file ? "grid" : "rig");
+    return TRUE;
+  }
+  self->cameras = gst_follow_cameras_new (self->element, rig_file, topology);
+  return self->cameras != NULL;
+}
+
+/* @rays: (out): what single cameras saw of a mesh's vertices; NULL: nothing is known of it. FALSE when an error
+ * was posted, or there is @damage. */
+static gboolean
+look_at_views (Follow * self, GstBuffer * buffer, const GstClothMesh * mesh,
+    const ClothRays ** rays, GError ** damage)
+{
+  *rays = NULL;
+  if (!gst_buffer_get_nth_cloth_view (buffer, 0)) {
+    if (self->has_views && !self->warned_views)
+      GST_ELEMENT_WARNING (self->element, STREAM, FORMAT,
+          ("A mesh comes without what its cameras saw, which those before it "
+              "had."),
+          ("Let nothing that drops metadata be between triangulate "
+              "and this element, and join it with no other stream."));
+    self->warned_views |= self->has_views;
+    return TRUE;
+  }
+  if (!open_cameras (self))
+    return FALSE;
+  if (!self->cameras)
+    return TRUE;
+  self->has_views = TRUE;
+  *rays = gst_follow_cameras_read (self->cameras, self->element, buffer, mesh,
+      damage);
+  return *rays != NULL;
+}
+
+/* A frame that can't be read; @error: it is damaged, else an error was posted. */
+static GstFlowReturn
+drop (Follow * self, GstBuffer * buffer, const GError * error)
+{
+  gst_buffer_unref (buffer);
+  if (!error)
+    return GST_FLOW_ERROR;
+  self->n_at_rate++;
+  return gst_cloth_damage_add (&self->settings.damage, self->element, error);
+}
+
 static GstFlowReturn
 gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
 {
@@ -452,7 +521,7 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
   g_autoptr (GstBuffer) picture = NULL;
   g_autoptr (GError) error = NULL;
   const ClothRays *rays = NULL;
-  gdouble time;
+  gdouble time, sigma = 0;
   guint64 sequence = 0;
   GstFlowReturn flow;
 
@@ -466,25 +535,18 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
   } else {
     mesh = gst_cloth_parse_mesh (buffer, self->n_vertices, &error);
   }
-  if (error) {
-    self->n_at_rate++;
-    gst_buffer_unref (buffer);
-    return gst_cloth_damage_add (&self->settings.damage, self->element, error);
-  }
+  if (error)
+    return drop (self, buffer, error);
   time = find_time (self, buffer);
   check_segment (self, time - get_offset (self));
   if (self->view) {
     rays = gst_follow_view_read (self->view, self->element, picture,
         &sequence, &error);
-    if (!rays) {
-      gst_buffer_unref (buffer);
-      if (!error)
-        return GST_FLOW_ERROR;
-      self->n_at_rate++;
-      return gst_cloth_damage_add (&self->settings.damage, self->element,
-          error);
-    }
+    if (!rays)
+      return drop (self, buffer, error);
   } else {
+    if (!look_at_views (self, buffer, mesh, &rays, &error))
+      return drop (self, buffer, error);
     sequence = gst_cloth_mesh_get_sequence (mesh);
   }
   time -= get_offset (self);
@@ -492,17 +554,21 @@ gst_cloth_follow_chain (GstPad * pad, GstObject * parent, GstBuffer * buffer)
     self->n_at_rate++;
     return flow;
   }
-  if (rays && !tell_picture (self, time)) {
+  if (self->view && !tell_picture (self, time)) {
     gst_buffer_unref (buffer);
     return GST_FLOW_ERROR;
   }
-  if (rays)
+  /* only where a recording begins its noise matters */
+  if (mesh && self->n_frames == 0)
+    sigma = find_sigma (self, mesh);
+  if (!mesh)
     cloth_observer_push_rays (self->observer, time, rays);
+  else if (rays)
+    cloth_observer_push_both (self->observer, time,
+        gst_cloth_mesh_get_positions (mesh, NULL), sigma, rays);
   else
-    /* only where a recording begins its noise matters */
     cloth_observer_push (self->observer, time,
-        gst_cloth_mesh_get_positions (mesh, NULL),
-        self->n_frames == 0 ? find_sigma (self, mesh) : 0);
+        gst_cloth_mesh_get_positions (mesh, NULL), sigma);
   g_clear_pointer (&mesh, gst_cloth_mesh_unref);
   self->last_time = time;
   self->n_frames++;
@@ -618,7 +684,7 @@ flush (Follow * self)
   g_queue_clear_full (&self->waiting, free_waiting);
   restart (self);
   gst_segment_init (&self->segment, GST_FORMAT_TIME);
-  self->warned = FALSE;
+  self->warned = self->warned_views = FALSE;
   gst_caps_replace (&self->refused, NULL);
   g_atomic_int_set (&self->cancelled, FALSE);
 }
@@ -778,6 +844,7 @@ stop (Follow * self)
   gst_follow_inputs_clear (&inputs);
   g_clear_pointer (&self->observer, cloth_observer_free);
   g_clear_pointer (&self->view, gst_follow_view_free);
+  g_clear_pointer (&self->cameras, gst_follow_cameras_free);
   g_clear_pointer (&self->residuals, g_free);
   g_clear_pointer (&self->sigmas, g_free);
   g_clear_pointer (&self->positions, g_free);
@@ -844,14 +911,16 @@ gst_cloth_follow_keep (GstClothFollow * self, GstFollowRecord ** record,
     const GstClothFollowFrame * frame, const gchar * purpose)
 {
   const GstFollowInputs *inputs = gst_cloth_follow_get_inputs (self);
+  const Follow *follow = follow_of (self);
   g_autoptr (GError) error = NULL;
 
   if (!*record)
-    *record = gst_follow_record_new (cloth_take_get_info (inputs->take),
-        inputs->scene, &error);
+    *record = gst_follow_record_new (inputs->take, inputs->scene, &error);
   if (*record
       && gst_follow_record_append (*record, frame->time, frame->positions,
-          frame->states, frame->covariances, &error))
+          frame->states, frame->covariances, &error)
+      && (!follow->cameras || gst_follow_record_see (*record, follow->cameras,
+              frame->buffer, &follow->segment, frame->time, &error)))
     return TRUE;
   GST_ELEMENT_ERROR (self, RESOURCE, WRITE,
       ("Can't keep the recording for its %s: %s", purpose, error->message),

@@ -23,6 +23,7 @@ G_DECLARE_DERIVABLE_TYPE (GstClothFollow, gst_cloth_follow, GST, CLOTH_FOLLOW,
  *   simulation is
  * @states: (array length=n_vertices): as recorded, #ClothVertexState
  * @covariances: (array) (nullable): of a mesh
+ * @buffer: as it came
  */
 typedef struct {
   gdouble time;
@@ -33,6 +34,7 @@ typedef struct {
   const gfloat *positions;
   const guint8 *states;
   const gfloat *covariances;
+  GstBuffer *buffer;
 } GstClothFollowFrame;
 
 /* @parent_class: the parent class
@@ -45,8 +47,8 @@ typedef struct {
  * @make_caps: (transfer full): what leaves of a stream of @caps; %NULL when an error was posted.
  *   Optional: the same.
  * @record: a frame leaves; %FALSE when an error was posted. Optional.
- * @leave: makes what leaves of @buffer, which it takes; @frame has no positions, states and
- *   covariances any more.
+ * @leave: makes what leaves of @buffer, which it takes; @frame has no positions, states,
+ *   covariances and buffer any more.
  * @finish: the stream has ended, and its last frame has left. One that goes on in another place begins a new
  *   recording and drops the old one. Optional.
  * @get_gain: g of the springs, 1/s²

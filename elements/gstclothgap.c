@@ -23,6 +23,13 @@
  * unseen; join two or more cameras by `triangulate` to see it. A recording from one camera
  * says nothing about the camera itself.
  *
+ * ## Several cameras
+ * Meshes of `triangulate` carry what each camera saw (#GstClothView). When `rig` has these cameras, what
+ * one of them alone saw, and the mesh therefore has not, counts across its ray. What several saw and the mesh
+ * has not, they contradict each other about: it counts as not seen. At the end the whole recording is
+ * diagnosed as what all cameras saw of it, as `gst-cloth-gap-1.0` does it with a take that has observations
+ * and no positions.
+ *
  * ## Messages
  * `clothgap/score`, for each window: `time` and `duration` (nanoseconds of stream time),
  * `rms` (double, metres: the simulation starts where the springs have brought it and runs
@@ -279,12 +286,16 @@ gst_gap_diagnose_finish (GstClothFollow * follow)
   const GstFollowSettings *settings = gst_cloth_follow_get_settings (follow);
   const ClothModel *model = gst_cloth_follow_get_inputs (follow)->model;
   const gboolean rays = gst_cloth_follow_has_rays (follow);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (GstFollowRecord) record = g_steal_pointer (&self->record);
+  g_autoptr (ClothObservations) seen = NULL;
+  g_autoptr (ClothTake) take = gst_follow_record_finish (record, &seen, &error);
   const ClothGapOptions options = {
     .baselines = &self->baseline,
     .n_baselines = self->baseline ? 1 : 0,
     .simulated = &self->simulated,
     .n_simulated = self->simulated ? 1 : 0,
-    .observations = rays ? NULL : &self->observations,
+    .observations = rays ? NULL : seen ? &seen : &self->observations,
     .baseline_observations = rays ? NULL : &self->baseline_observations,
     .model_file = settings->model,
     .effects = (const gchar * const *) self->effects,
@@ -293,9 +304,6 @@ gst_gap_diagnose_finish (GstClothFollow * follow)
     .progress = go_on,
     .progress_data = self
   };
-  g_autoptr (GError) error = NULL;
-  g_autoptr (GstFollowRecord) record = g_steal_pointer (&self->record);
-  g_autoptr (ClothTake) take = gst_follow_record_finish (record, &error);
   g_autoptr (ClothGapResult) result = take ?
       cloth_gap_diagnose (&take, 1, model, &options, &error) : NULL;
 

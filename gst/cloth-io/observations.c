@@ -258,6 +258,28 @@ gst_cloth_io_observations_read (ClothObservations * observations, guint camera,
   return good;
 }
 
+/* @output: a file of observations
+ * @observation: one picture of them
+ * @time: when, by the camera's clock
+ * @error: #ClothFitError, #GIOErrorEnum
+ *
+ * Writes a picture, with its time, as clothmetapay ! filesink would.
+ *
+ * Returns: whether it is written
+ */
+gboolean
+gst_cloth_io_observations_write (ClothOutput * output, GstBuffer * observation,
+    GstClockTime time, GError ** error)
+{
+  const gsize size = gst_buffer_get_size (observation);
+  g_autofree guint8 *bytes = g_malloc (size);
+
+  if (size < HEADER || gst_buffer_extract (observation, 0, bytes, size) < size)
+    return fail (error, "a picture of %" G_GSIZE_FORMAT " bytes is none", size);
+  GST_WRITE_UINT64_LE (bytes + TIME_AT, time);
+  return cloth_output_write (output, bytes, size, error);
+}
+
 /* The names that files may have. */
 static gchar *
 list_names (const ClothRig * rig)

@@ -46,9 +46,10 @@ def check(condition, text):
         raise Failure(text)
 
 
-def run(description, on_buffer=None, posted=None):
+def run(description, on_buffer=None, posted=None, feed=None):
     """Plays a pipeline to its end. Every appsink feeds on_buffer (name, buffer, caps); the texts of element
-    messages go into posted, by name. Returns how many buffers each got, the error if there was one, and the warnings."""
+    messages go into posted, by name; feed has what appsrcs send, by name. Returns how many buffers each got, the error if
+    there was one, and the warnings."""
     print('gst-launch-1.0 ' + description)
     pipeline = Gst.parse_launch(description)
     counts = {}
@@ -74,6 +75,11 @@ def run(description, on_buffer=None, posted=None):
 
     bus = pipeline.get_bus()
     pipeline.set_state(Gst.State.PLAYING)
+    for name, buffers in (feed or {}).items():
+        source = pipeline.get_by_name(name)
+        for buffer in buffers:
+            source.emit('push-buffer', buffer)
+        source.emit('end-of-stream')
     warnings = []
     while True:
         message = bus.timed_pop_filtered(TIMEOUT_S * Gst.SECOND, Gst.MessageType.EOS
@@ -96,8 +102,8 @@ def run(description, on_buffer=None, posted=None):
     return counts, error, warnings
 
 
-def play(description, on_buffer=None, posted=None):
-    counts, error, _ = run(description, on_buffer, posted)
+def play(description, on_buffer=None, posted=None, feed=None):
+    counts, error, _ = run(description, on_buffer, posted, feed)
     check(error is None, 'it runs to its end' + (': ' + error if error else ''))
     return counts
 
@@ -368,6 +374,129 @@ def case_fit_film(data):
         off = 1e3 * numpy.sqrt((numpy.linalg.norm(numpy.load(folder + '/whole.take/positions.npy') - truth, axis=2)
                                 ** 2).mean())
         check(off < 15, 'the cloth drawn across the sight is %.1f mm RMS off, with the model as it was' % off)
+
+
+class Head:
+    """Three cameras about the swinging sheet of take_drag, as a pinhole has its corners, with noise. The lower rows are seen by
+    the first camera alone. The second one's clock is ahead, and its pictures are a little late."""
+    POSES = {
+        'left': ([[0.6, 0.8, 0], [0, 0, -1], [-0.8, 0.6, 0]], [-0.114, 1.3, 1.352]),
+        'right': ([[0.6, -0.8, 0], [0, 0, -1], [0.8, 0.6, 0]], [-0.114, 1.3, 1.048]),
+        'front': ([[1, 0, 0], [0, 0, -1], [0, 1, 0]], [-0.19, 1.3, 1.2])}
+    K = [[900, 0, 319.5], [0, 900, 239.5], [0, 0, 1]]
+    OFFSET_S = {'left': 0, 'right': 0.004, 'front': 0}
+    LATE_S = {'left': 0, 'right': 0.0001, 'front': 0}
+    ROWS = 4
+    SIGMA = 0.05
+
+    def __init__(self, data, folder):
+        self.take, self.folder = os.path.join(data, 'take_drag'), folder
+        self.rig, self.pattern = folder + '/rig.json', folder + '/pattern.json'
+        self.truth = numpy.load(self.take + '/positions.npy')
+        random = numpy.random.RandomState(1)
+        self.packets = {name: [self.see(name, frame, random) for frame in range(len(self.truth))] for name in self.POSES}
+        with open(self.rig, 'w', encoding='utf-8') as file:
+            json.dump({'version': 1, 'cameras': [{
+                'name': name, 'size': [640, 480], 'K': self.K, 'distortion': {'model': 'none', 'coefficients': []},
+                'R': R, 't': t, 'offset_s': self.OFFSET_S[name]} for name, (R, t) in self.POSES.items()]}, file)
+        with open(self.pattern, 'w', encoding='utf-8') as file:
+            json.dump({'version': 1, 'pattern': 'checker', 'columns': 8, 'rows': 8, 'square_m': 0.05,
+                       'origin_uv_m': [0, 0], 'cloth_m': [0.4, 0.4], 'first_square': 'black'}, file)
+
+    def see(self, name, frame, random):
+        R, t = self.POSES[name]
+        share = 50 * self.LATE_S[name]
+        truth = (1 - share) * self.truth[frame] + share * self.truth[min(frame + 1, len(self.truth) - 1)]
+        places = truth @ numpy.transpose(R) + t
+        px = (places / places[:, 2:]) @ numpy.transpose(self.K)[:, :2] + self.SIGMA * random.randn(81, 2)
+        quads = []
+        for i in range(64 if name == 'left' else 8 * self.ROWS):
+            quad = GstCloth.Quad()
+            quad.column, quad.row, quad.state, quad.confidence = i % 8, i // 8, GstCloth.QuadState.TRACKED, 1
+            for corner, (column, row) in enumerate(((0, 0), (1, 0), (1, 1), (0, 1))):
+                x, y = px[9 * (quad.row + row) + quad.column + column]
+                quad.set_corner(corner, x, y, self.SIGMA ** 2, 0, self.SIGMA ** 2)
+            quads.append(quad)
+        picture = Gst.Buffer.new()
+        picture.pts = round((frame / 50 + self.OFFSET_S[name] + self.LATE_S[name]) * Gst.SECOND)
+        picture.duration = Gst.SECOND // 50
+        GstCloth.buffer_add_cloth_quads_meta(picture, GstCloth.Quads.new(name, frame, 8, 8, quads))
+        return GstCloth.observations_pack(picture)
+
+    def record(self, folder):
+        """A take of what the cameras saw, with nothing else but where it starts."""
+        os.makedirs(folder + '/observations')
+        for name in 'take.json', 'clamps.npy':
+            shutil.copy(os.path.join(self.take, name), folder)
+        shutil.copy(self.rig, folder)
+        numpy.save(folder + '/positions.npy', self.truth[:1])
+        numpy.save(folder + '/times.npy', numpy.arange(len(self.truth)) / 50)
+        for name, packets in self.packets.items():
+            with open('%s/observations/%s.obs' % (folder, name), 'wb') as file:
+                for packet in packets:
+                    file.write(packet.extract_dup(0, packet.get_size()))
+
+    def join(self):
+        return ''.join(' appsrc name=%s format=time max-bytes=0 caps="application/x-cloth-observations, version=1, width=640,'
+                       ' height=480, framerate=50/1" ! join.' % name for name in self.POSES) + \
+            ' triangulate name=join rig=%s pattern=%s' % (self.rig, self.pattern)
+
+    def play(self, rest, posted=None):
+        return play(self.join() + rest, posted=posted, feed=self.packets)
+
+
+def tool(*arguments):
+    result = subprocess.run([os.path.join(os.environ['CLOTH_BUILD'], 'tools', arguments[0]), *arguments[1:]],
+                            capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
+    check(result.returncode == 0, ' '.join(arguments[:2]) + (result.stderr if result.returncode else ''))
+
+
+def read_gap(text):
+    """A diagnosis but for how long it took and for what was written of its recording."""
+    gap = json.loads(text)
+    for key in 'seconds', 'inputs':
+        gap.pop(key)
+    return gap
+
+
+def case_cameras(data):
+    """What three cameras see of a sheet, live: what one of them alone sees counts, and the fit and the diagnosis are those of
+    the tools on a take of the same cameras."""
+    with tempfile.TemporaryDirectory() as folder:
+        head, off, posted = Head(data, folder), {}, {}
+        head.record(folder + '/seen')
+        with open(os.path.join(ROOT, 'pipelines/model-knit.json'), encoding='utf-8') as file:
+            model = json.load(file)
+        model['stretch'], model['shear'], model['free'] = {'warp': 50, 'weft': 200}, 20, model['free'][:3]
+        with open(folder + '/wrong.json', 'w', encoding='utf-8') as file:
+            json.dump(model, file)
+        fit = ' ! clothfit model=%s/wrong.json location=%s' % (folder, head.take)
+        head.play(' ! meshsink location=%s/mesh.take' % folder)
+        head.play(fit + ' rig=%s fitted=%s/live.json ! meshsink location=%s/rays.take' % (head.rig, folder, folder))
+        head.play(fit + ' ! meshsink location=%s/places.take' % folder)
+        lone = numpy.isnan(numpy.load(folder + '/mesh.take/positions.npy')[:, :, 0])
+        check(0.4 < lone.mean() < 0.5, '%.0f%% of the vertices are on no mesh' % (100 * lone.mean()))
+        for name in 'rays', 'places':
+            places = numpy.load('%s/%s.take/positions.npy' % (folder, name))
+            off[name] = 1e3 * numpy.sqrt((numpy.linalg.norm(places - head.truth, axis=2)[lone] ** 2).mean())
+            states = numpy.load('%s/%s.take/states.npy' % (folder, name))
+            check((states[:, 45:] == (1 if name == 'rays' else 4)).all(), 'the lower rows are measured, or else predicted')
+        check(off['rays'] < off['places'] / 2,
+              'they are %.1f mm RMS off, without the rays %.1f' % (off['rays'], off['places']))
+        tool('gst-cloth-fit-1.0', 'fit', folder + '/seen', '--model', folder + '/wrong.json', '--output', folder + '/tool')
+        with open(folder + '/live.json', 'rb') as live, open(folder + '/tool/fitted.json', 'rb') as of_take:
+            check(live.read() == of_take.read(), 'fitted.json has the same bytes')
+
+        knit = os.path.join(ROOT, 'pipelines/model-knit.json')
+        head.play(' ! clothgap model=%s location=%s rig=%s effects=air_drag,wind output=%s/gap ! fakesink'
+                  % (knit, head.take, head.rig, folder), posted)
+        check('clothgap/score' in posted and 'clothgap/verdict' in posted, 'scores and a verdict')
+        tool('gst-cloth-gap-1.0', 'diagnose', folder + '/seen', '--model', knit, '--effects', 'air_drag,wind', '--output',
+             folder + '/gap-tool')
+        with open(folder + '/gap/gap.json', encoding='utf-8') as live, \
+                open(folder + '/gap-tool/gap.json', encoding='utf-8') as of_take:
+            live, of_take = read_gap(live.read()), read_gap(of_take.read())
+        check(live == of_take, 'gap.json says the same: %s, %s' % (live['verdict'], [e['name'] for e in live['effects'][:2]]))
 
 
 def case_early_end(data):
