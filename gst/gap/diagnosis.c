@@ -61,6 +61,8 @@ cloth_diagnosis_clear (ClothDiagnosis * d)
   g_free (d->all);
   cloth_power_spectrum_free (d->discrepancy_variance);
   g_free (d->clamps_off);
+  for (guint i = 0; i < CLOTH_DIAGNOSIS_N_SUBSETS; i++)
+    cloth_model_free (d->fitted[i]);
   cloth_model_free (d->with);
   cloth_energy_spectrum_free (d->before);
   cloth_energy_spectrum_free (d->after);
@@ -193,6 +195,7 @@ cloth_diagnosis_other_model (const ClothModel * model)
 }
 
 /* @d: a diagnosis
+ * @subset: which of the accepted effects: bit k stands for the k-th
  * @directions: (out) (array): the free numbers and the directions of what is accepted, but those of
  *   what is there or not
  * @precisions: (out) (array): of their priors
@@ -200,15 +203,16 @@ cloth_diagnosis_other_model (const ClothModel * model)
  * Returns: how many there are
  */
 guint
-cloth_diagnosis_list_accepted (const ClothDiagnosis * d, guint * directions,
-    gdouble * precisions)
+cloth_diagnosis_list_accepted (const ClothDiagnosis * d, guint subset,
+    guint * directions, gdouble * precisions)
 {
   guint m = d->candidates->n_free;
 
   memcpy (directions, d->all, m * sizeof *directions);
   memcpy (precisions, d->precisions, m * sizeof *precisions);
   for (guint c = 0; c < d->n_accepted; c++)
-    for (guint k = 0; k < cloth_diagnosis_accepted (d, c)->n; k++) {
+    for (guint k = 0; (subset >> c & 1) && k < cloth_diagnosis_accepted (d,
+            c)->n; k++) {
       const guint direction = cloth_diagnosis_accepted (d, c)->first + k;
       const ClothDirection *of =
           cloth_candidates_direction (d->candidates, direction);

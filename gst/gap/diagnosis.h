@@ -25,6 +25,8 @@ G_BEGIN_DECLS
 #define CLOTH_DIAGNOSIS_WINDOW_GAIN 1600.
 /* Most effects that are accepted. */
 #define CLOTH_DIAGNOSIS_MAX_ACCEPTED 3
+/* Subsets of them. */
+#define CLOTH_DIAGNOSIS_N_SUBSETS (1 << CLOTH_DIAGNOSIS_MAX_ACCEPTED)
 
 /* What was wrong with a camera, or, when @camera is the number of cameras, with all alike. */
 typedef struct
@@ -87,13 +89,16 @@ typedef struct
   gboolean is_alike;
   ClothPowerSpectrum *discrepancy_variance;
 
-  /* Accepted effects, made by conclude.c, read by verdict/: candidates, and the model with all of
-   * them, fitted on what doesn't judge; NULL without any. And an effect of chance that is likelier
-   * than not, or NULL. */
+  /* Accepted effects, made by conclude.c, read by verdict/: candidates. The models with each subset of
+   * them, fitted by infer.c on what doesn't judge: bit k of the index says that the k-th acts; NULL where
+   * there is none. measure.c takes back what brings the simulation no nearer to the cloth, and keeps the
+   * model with the others; NULL without any. And an effect of chance that is likelier than not, or NULL. */
   guint accepted[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   guint n_accepted;
+  ClothModel *fitted[CLOTH_DIAGNOSIS_N_SUBSETS];
   ClothModel *with;
   const ClothEffect *chance;
+  gboolean is_taken_back;       /* whether any was */
 
   /* What was measured of each recording, and behind them of all that judge; made and read by
    * measure.c. */
@@ -170,7 +175,7 @@ ClothRecording *cloth_diagnosis_after (const ClothDiagnosis * d,
 guint cloth_diagnosis_count_faults (const ClothDiagnosis * d);
 ClothModel *cloth_diagnosis_other_model (const ClothModel * model);
 guint cloth_diagnosis_list_accepted (const ClothDiagnosis * d,
-    guint * directions, gdouble * precisions);
+    guint subset, guint * directions, gdouble * precisions);
 ClothRecording *cloth_diagnosis_correct (const ClothRecording * recording,
     const ClothModel * model);
 ClothWindowedGap **cloth_diagnosis_measure_windows (ClothDiagnosis * d,

@@ -125,15 +125,19 @@ note_discrepancies (ClothDiagnosis * d, const ClothGapGathered * gathered,
       d->discrepancy_variance->n * sizeof (gdouble));
 }
 
-/* The free numbers and the directions of what is accepted, with the precisions of their priors. */
+/* Fits the free numbers and the directions of some of what is accepted. A model that can't be fitted stays as it
+ * starts. */
 static gboolean
-refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
+refit (ClothDiagnosis * d, guint subset, const ClothModel * start,
+    GError ** error)
 {
   const guint most = d->candidates->directions->len;
   g_autofree guint *directions = g_new (guint, most + 1);
   g_autofree gdouble *precisions = g_new (gdouble, most + 1);
   g_autofree gboolean *blocks = NULL;
-  const guint m = cloth_diagnosis_list_accepted (d, directions, precisions);
+  g_autoptr (GError) failed = NULL;
+  const guint m = cloth_diagnosis_list_accepted (d, subset, directions,
+      precisions);
   guint n = 0;
 
   for (guint t = 0; t < d->n_takes; t++)
@@ -143,10 +147,18 @@ refit (ClothDiagnosis * d, const ClothModel * start, GError ** error)
   for (guint t = 0; t < d->n_takes; t++)
     for (guint b = 0; b < cloth_diagnosis_study (d, t)->features->n_blocks; b++)
       blocks[n++] = !cloth_diagnosis_is_held_out (d, b);
-  d->with = cloth_gauss_newton_fit ((ClothSensitivities **) d->studies->pdata,
-      d->n_takes, d->candidates, start, directions, precisions, m, blocks,
-      CLOTH_FIT_DEFAULT, N_REFIT, &d->study, NULL, error);
-  return d->with != NULL;
+  d->fitted[subset] = cloth_gauss_newton_fit ((ClothSensitivities **)
+      d->studies->pdata, d->n_takes, d->candidates, start, directions,
+      precisions, m, blocks, CLOTH_FIT_DEFAULT, N_REFIT, &d->study, NULL,
+      &failed);
+  if (!failed)
+    return TRUE;
+  if (!g_error_matches (failed, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL)) {
+    g_propagate_error (error, g_steal_pointer (&failed));
+    return FALSE;
+  }
+  d->fitted[subset] = cloth_model_copy (start);
+  return TRUE;
 }
 
 /* How the twins are related to the recordings, nobody knows: they are taken for what makes the recordings
@@ -250,19 +262,49 @@ run_rounds (ClothDiagnosis * d, const ClothGapGathered * gathered,
   return TRUE;
 }
 
-/* The model with what was accepted of the likeliest explanation. */
+/* The model with some of what was accepted: as they were found by themselves, else as in the likeliest explanation. */
 static ClothModel *
-make_accepted_model (const ClothDiagnosis * d, const ClothGapHypothesis * best)
+make_accepted_model (const ClothDiagnosis * d, const GArray * hypotheses,
+    guint subset)
 {
-  ClothGapHypothesis accepted;
+  const ClothGapHypothesis *best = &g_array_index (hypotheses,
+      ClothGapHypothesis, 0);
+  guint list[CLOTH_DIAGNOSIS_MAX_ACCEPTED], n = 0;
+  ClothGapHypothesis some;
 
-  cloth_gap_hypothesis_init (&accepted, d->candidates, NULL, d->accepted,
-      d->n_accepted);
-  for (guint k = 0; k < accepted.n_directions; k++)
+  for (guint c = 0; c < d->n_accepted; c++)
+    if (subset >> c & 1)
+      list[n++] = d->accepted[c];
+  cloth_gap_hypothesis_init (&some, d->candidates, NULL, list, n);
+  for (guint i = 0; i < hypotheses->len; i++) {
+    const ClothGapHypothesis *h = &g_array_index (hypotheses,
+        ClothGapHypothesis, i);
+
+    if (h->z && cloth_gap_hypothesis_is_same (h, &some))
+      best = h;
+  }
+  for (guint k = 0; k < some.n_directions; k++)
     for (guint i = 0; i < best->n_directions; i++)
-      if (best->directions[i] == accepted.directions[k])
-        accepted.at[k] = best->at[i];
-  return cloth_gap_hypothesis_make_model (d, &accepted);
+      if (best->directions[i] == some.directions[k])
+        some.at[k] = best->at[i];
+  return cloth_gap_hypothesis_make_model (d, &some);
+}
+
+/* Fits the model with each subset of what was accepted, so that it shows what each effect is good for. */
+static gboolean
+fit_accepted (ClothDiagnosis * d, const GArray * hypotheses, GError ** error)
+{
+  const guint n_subsets = 1 << d->n_accepted;
+
+  for (guint subset = 1; subset < n_subsets; subset++) {
+    g_autoptr (ClothModel) start = make_accepted_model (d, hypotheses, subset);
+
+    cloth_diagnosis_begin_part (d, 0.75 + 0.1 * (subset - 1) / n_subsets,
+        0.75 + 0.1 * subset / n_subsets, 0.3, "fitting the likeliest effects");
+    if (!refit (d, subset, start, error))
+      return FALSE;
+  }
+  return TRUE;
 }
 
 /* @d: a diagnosis whose model is fitted
@@ -297,19 +339,7 @@ cloth_diagnosis_infer (ClothDiagnosis * d, GError ** error)
     }
   }
   cloth_gap_gathered_clear (&gathered, d->n_takes);
-  if (!failed && d->n_accepted) {
-    g_autoptr (ClothModel) start = make_accepted_model (d,
-        &g_array_index (hypotheses, ClothGapHypothesis, 0));
-
-    cloth_diagnosis_begin_part (d, 0.75, 0.85, 0.3,
-        "fitting the likeliest effects");
-    if (!refit (d, start, &failed)
-        && g_error_matches (failed, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_MODEL)) {
-      g_clear_error (&failed);
-      d->with = g_steal_pointer (&start);
-    }
-  }
-  if (!failed)
+  if (!failed && fit_accepted (d, hypotheses, &failed))
     return TRUE;
   g_propagate_error (error, g_steal_pointer (&failed));
   return FALSE;

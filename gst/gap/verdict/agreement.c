@@ -191,8 +191,8 @@ cloth_diagnosis_test_agreement (ClothDiagnosis * d, GError ** error)
     return TRUE;
   a.directions = g_new (guint, most);
   a.precisions = g_new (gdouble, most);
-  a.n = cloth_diagnosis_list_accepted (d, a.directions, a.precisions) -
-      d->candidates->n_free;
+  a.n = cloth_diagnosis_list_accepted (d, CLOTH_DIAGNOSIS_N_SUBSETS - 1,
+      a.directions, a.precisions) - d->candidates->n_free;
   a.g = g_new0 (gdouble, (gsize) (n_takes + 1) * a.n * a.n);
   a.s = g_new0 (gdouble, (gsize) (n_takes + 1) * a.n);
   a.changes = g_new0 (gdouble, (gsize) (n_takes + 1) * a.n);

@@ -4,7 +4,8 @@
  *     accepted effects leave more than the floor; or clamps were elsewhere than logged, beside accepted
  *     effects by a fifth of the gap's power at least; or an unknown field is likelier than not, beside a
  *     baseline or a twin, has a fifth of the gap's or the floor's power at least, and the accepted effects
- *     leave more than the floor;
+ *     leave more than the floor; or the simulation with what is likeliest to act is not surely nearer to the cloth,
+ *     whose gap is above the floor of a baseline or a twin;
  *   explained: effects act, and no other explanation is among those that have 95% together;
  *   ambiguous: effects act, and others would do as well;
  *   no_gap: it is likelier than not that nothing acts, and there is a baseline or a twin to say so;
@@ -177,6 +178,12 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
     r->verdict =
         cloth_gap_result_is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS :
         CLOTH_GAP_EXPLAINED;
+  } else if (likely && d->is_taken_back) {
+    r->verdict = cloth_diagnosis_n_references (d) ? CLOTH_GAP_UNEXPLAINED :
+        CLOTH_GAP_UNDECIDABLE;
+    r->reason = g_strdup_printf ("It is likelier than not that an effect acts, "
+        "%s first of all, but the simulation with it is not surely nearer to "
+        "the cloth.", likely->id);
   } else if (likely) {
     r->verdict = CLOTH_GAP_UNDECIDABLE;
     r->reason = g_strdup_printf ("It is likelier than not that an effect acts, "

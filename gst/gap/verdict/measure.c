@@ -24,15 +24,15 @@
 
 #include "gst/fit/recording/recording.h"
 #include "gst/gap/localise/where.h"
+#include "gst/gap/verdict/subset.h"
 #include "gst/math/random.h"
 #include "gst/math/statistics.h"
 
-/* A shrink is given when what is above the floor is this share of all, in variance. */
-#define LEAST_ABOVE_SHARE 0.1
 /* Of the bootstrap. */
 #define N_DRAWS 1000
-/* Most models that are compared: without effects, without faults of cameras, with all effects. */
-#define MAX_MODELS 3
+/* Most models that are compared: without effects, without faults of cameras, with each subset of the
+ * accepted effects. */
+#define MAX_MODELS (1 + CLOTH_DIAGNOSIS_N_SUBSETS)
 
 /* In windows, and in the free run. */
 typedef enum
@@ -561,14 +561,15 @@ find_shrink (const Square * before, const Square * after, const Square * floor)
   const gdouble above = before->square - floor->square;
   g_autofree gdouble *shrinks = g_new (gdouble, N_DRAWS);
 
-  if (!(above > LEAST_ABOVE_SHARE * before->square) || isnan (after->square))
+  if (!(above > CLOTH_GAP_LEAST_ABOVE_SHARE * before->square)
+      || isnan (after->square))
     return (ClothGapEstimate) {
     NAN, NAN, NAN};
   for (guint i = 0; i < N_DRAWS; i++) {
     gdouble b = draw_of (before, i), a = draw_of (after, i);
 
     shrinks[i] = (b - a) / MAX (b - floor->square,
-        LEAST_ABOVE_SHARE * before->square);
+        CLOTH_GAP_LEAST_ABOVE_SHARE * before->square);
   }
   return find_interval ((before->square - after->square) / above, shrinks);
 }
@@ -662,6 +663,57 @@ keep_first (ClothDiagnosis * d, ClothWindowedGap * before,
     d->after = g_steal_pointer (&after->energy);
 }
 
+/* Which of the accepted effects bring the simulation nearer to the cloth, by the gaps of all models from the one
+ * without effects on. */
+static guint
+choose_subset (const Work * w, const Square * models)
+{
+  const guint n = 1 << w->d->n_accepted;
+  g_autofree gdouble *squares = g_new (gdouble, n);
+  g_autofree gdouble *draws = g_new (gdouble, n * N_DRAWS);
+
+  for (guint k = 0; k < n; k++) {
+    squares[k] = models[k].square;
+    for (guint i = 0; i < N_DRAWS; i++)
+      draws[k * N_DRAWS + i] = draw_of (&models[k], i);
+  }
+  return cloth_gap_choose_subset (squares, draws, N_DRAWS,
+      w->d->n_accepted, w->judges->floor[WINDOWS].square);
+}
+
+/* Takes back what is not of a subset of the accepted effects; @models: the gaps with each subset. */
+static void
+keep_subset (ClothDiagnosis * d, const Square * models, guint subset)
+{
+  GArray *effects = d->result->effects;
+  guint n = 0;
+
+  for (guint c = 0; c < d->n_accepted; c++) {
+    const ClothEffect *effect = cloth_diagnosis_accepted (d, c)->effect;
+    g_autofree gchar *note = NULL;
+
+    if (subset >> c & 1) {
+      d->accepted[n++] = d->accepted[c];
+      continue;
+    }
+    for (guint i = effects->len; i-- > 0;) {
+      ClothGapEffect *e = &g_array_index (effects, ClothGapEffect, i);
+
+      if (e->effect == effect)
+        e->accepted = FALSE;
+    }
+    note = g_strdup_printf ("The residual speaks for %s, but the simulation "
+        "with it is not surely nearer to the cloth (gap %.3g mm, without it "
+        "%.3g mm), so it is not accepted.", effect->id,
+        1e3 * sqrt (models[subset | 1u << c].square),
+        1e3 * sqrt (models[subset].square));
+    cloth_gap_result_add_note (d->result, note);
+    d->is_taken_back = TRUE;
+  }
+  d->n_accepted = n;
+  d->with = g_steal_pointer (&d->fitted[subset]);
+}
+
 /* @d: a diagnosis whose effects are known
  * @error: #ClothSimError or #ClothFitError
  *
@@ -674,11 +726,12 @@ gboolean
 cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
 {
   const guint faults = cloth_diagnosis_count_faults (d) > 0;
-  const guint best = faults + (d->with != NULL);
-  g_auto (Work) w = { d, {d->model, d->model}, 1 + best };
+  const guint n_subsets = 1 << d->n_accepted;
+  g_auto (Work) w = { d, {d->model, d->model}, faults + n_subsets };
+  guint subset, best;
 
-  if (d->with)
-    w.models[best] = d->with;
+  for (guint i = 1; i < n_subsets; i++)
+    w.models[faults + i] = d->fitted[i];
   d->measured = g_array_new (FALSE, TRUE, sizeof (Measured));
   g_array_set_clear_func (d->measured, measured_clear);
   g_array_set_size (d->measured, d->recordings->len + 1);
@@ -694,6 +747,9 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
         return FALSE;
   }
   sum_judges (&w);
+  subset = choose_subset (&w, w.judges->models[WINDOWS] + faults);
+  best = faults + subset;
+  keep_subset (d, w.judges->models[WINDOWS] + faults, subset);
   fill_result (&w, faults, best);
   keep_first (d, w.first[0], best ? w.first[best] : NULL);
   return TRUE;
