@@ -441,6 +441,9 @@ evaluate (const Arguments * a, const gchar * what, ClothSearch * search,
     ClothSynthesisProblem * problem, GError ** error)
 {
   const ClothSpoolOptions options = { what, PACKAGE_VERSION, 0. };
+  /* the order of decisions says which number a point has */
+  g_autofree gchar *made_of = g_strconcat (what, a->as_they_come ?
+      " as-they-come" : " in-order", NULL);
   g_autoptr (ClothSpool) spool = NULL;
 
   if (!a->spool) {
@@ -449,7 +452,7 @@ evaluate (const Arguments * a, const gchar * what, ClothSearch * search,
     return TRUE;
   }
   spool = a->worker ? cloth_spool_join (a->spool, &options, JOIN_S, error) :
-      cloth_spool_manage (a->spool, &options, what, a->resume, error);
+      cloth_spool_manage (a->spool, &options, made_of, a->resume, error);
   if (spool && !a->worker)
     g_printerr
         ("the points wait for workers: takes, --model, --rig, --seed and "

@@ -8,6 +8,7 @@
  *   failed/ID.json      the same when it did not work
  *   beats/NAME          signs of life of a manager or worker
  *   closed              no more jobs
+ *   notes               lines of the manager for who resumes the spool
  *
  * Jobs and results are not brought to the disk one by one, which takes longer than a claim: what a
  * computer that loses its power leaves half is none, and is done again by who resumes.
@@ -18,6 +19,7 @@
 #include "gst/file/spool.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <string.h>
@@ -53,6 +55,7 @@ struct _ClothSpool
   guint next;                   /* of waiting: where to look for a result */
   gint64 looked_us, unmanaged_us;
   gint64 wait_us;
+  gint notes;                   /* the open file, or -1 */
 };
 
 static const ClothJsonFile spool_file = {
@@ -376,6 +379,7 @@ spool_new (const gchar * folder, const ClothSpoolOptions * options)
   s->host = g_strdup (g_get_host_name ());
   s->lost_s = options->lost_s > 0. ? options->lost_s : CLOTH_SPOOL_LOST_S;
   s->wait_us = LEAST_WAIT_US;
+  s->notes = -1;
   s->waiting = g_ptr_array_new_with_free_func (g_free);
   s->put = g_hash_table_new (g_str_hash, g_str_equal);
   s->lost = g_hash_table_new_full (g_str_hash, g_str_equal, g_free, NULL);
@@ -416,6 +420,8 @@ cloth_spool_free (ClothSpool * spool)
     if (is_mine (spool, path))
       g_unlink (path);
   }
+  if (spool->notes >= 0)
+    close (spool->notes);
   cloth_life_free (spool->life);
   g_hash_table_unref (spool->put);
   g_hash_table_unref (spool->lost);
@@ -747,6 +753,55 @@ cloth_spool_close (ClothSpool * spool, GError ** error)
   g_autofree gchar *path = g_build_filename (spool->folder, "closed", NULL);
 
   return cloth_file_write_text (path, "no more jobs\n", error);
+}
+
+/* @spool: a manager's, which asks once
+ * @error: #GIOErrorEnum, #ClothFileError
+ *
+ * The lines get a file of their own: a manager that this one has replaced may still add to the other.
+ *
+ * Returns: (transfer full) (nullable): the lines that managers before have noted, without half
+ *   a one of who was killed
+ */
+gchar *
+cloth_spool_begin_notes (ClothSpool * spool, GError ** error)
+{
+  g_autofree gchar *path = g_build_filename (spool->folder, "notes", NULL);
+  g_autofree gchar *text = NULL;
+  gchar *end;
+  gsize length;
+
+  if (!g_file_test (path, G_FILE_TEST_EXISTS))
+    text = g_strdup ("");
+  else if (!(text = cloth_text_file_load (path, &length, error)))
+    return NULL;
+  end = strrchr (text, '\n');
+  *(end ? end + 1 : text) = 0;
+  if (!cloth_file_write_text (path, text, error))
+    return NULL;
+  spool->notes = g_open (path, O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0);
+  if (spool->notes >= 0)
+    return g_steal_pointer (&text);
+  cloth_file_fail (error, errno, "write", path);
+  return NULL;
+}
+
+/* @spool: a manager's that has begun its notes
+ * @lines: to add
+ * @error: #GIOErrorEnum
+ *
+ * Returns: whether they are on the disk
+ */
+gboolean
+cloth_spool_note (ClothSpool * spool, const gchar * lines, GError ** error)
+{
+  gint code = cloth_file_append (spool->notes, lines, strlen (lines));
+  g_autofree gchar *path = NULL;
+
+  if (!code && !fsync (spool->notes))
+    return TRUE;
+  path = g_build_filename (spool->folder, "notes", NULL);
+  return cloth_file_fail (error, code ? code : errno, "write", path);
 }
 
 /* ---- a worker ---- */

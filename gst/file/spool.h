@@ -55,6 +55,9 @@ gboolean cloth_spool_put (ClothSpool * spool, const gchar * id,
 ClothSpoolJob *cloth_spool_take (ClothSpool * spool, GError ** error);
 gboolean cloth_spool_look_after (ClothSpool * spool, GError ** error);
 guint cloth_spool_get_n_lost (const ClothSpool * spool);
+gchar *cloth_spool_begin_notes (ClothSpool * spool, GError ** error);
+gboolean cloth_spool_note (ClothSpool * spool, const gchar * lines,
+    GError ** error);
 gboolean cloth_spool_close (ClothSpool * spool, GError ** error);
 
 ClothSpool *cloth_spool_join (const gchar * folder,

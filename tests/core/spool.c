@@ -597,7 +597,7 @@ bowl (gpointer data, const gdouble * x, guint worker)
 }
 
 static ClothSearch *
-new_search (void)
+new_search (gboolean as_they_come)
 {
   static const gdouble start[2] = { 2.5, 2.5 };
   ClothSearchOptions its;
@@ -609,6 +609,7 @@ new_search (void)
   its.least_step = 2e-3;
   its.same = 1e-6;
   its.decrease = 0.;
+  its.as_they_come = as_they_come;
   return cloth_search_new (&its, NULL);
 }
 
@@ -633,8 +634,8 @@ start_evaluating (Fixture * f)
 static void
 test_search (Fixture * f, gconstpointer data)
 {
-  g_autoptr (ClothSearch) one = new_search ();
-  g_autoptr (ClothSearch) s = new_search ();
+  g_autoptr (ClothSearch) one = new_search (FALSE);
+  g_autoptr (ClothSearch) s = new_search (FALSE);
   g_autoptr (ClothSpool) spool = NULL;
   g_autoptr (GError) error = NULL;
   pid_t manager, workers[2];
@@ -646,7 +647,7 @@ test_search (Fixture * f, gconstpointer data)
     ClothSpool *its = cloth_spool_manage (f->folder, &options, "p", FALSE,
         NULL);
 
-    cloth_search_run_spool (new_search (), its, NULL);
+    cloth_search_run_spool (new_search (FALSE), its, NULL);
     _exit (1);
   }
   for (guint i = 0; i < 2; i++)
@@ -669,6 +670,83 @@ test_search (Fixture * f, gconstpointer data)
       cloth_search_get_counts (one).n_decided);
 }
 
+/* Ends @n trials, of those that are there the last one first. */
+static void
+evaluate_backwards (Fixture * f, guint n)
+{
+  g_autoptr (ClothSpool) worker = cloth_spool_join (f->folder, &options, 5.,
+      NULL);
+  g_autoptr (GPtrArray) jobs =
+      g_ptr_array_new_with_free_func ((GDestroyNotify) cloth_spool_job_free);
+
+  for (guint i = 0; i < n; i++) {
+    gchar number[G_ASCII_DTOSTR_BUF_SIZE], *end;
+    g_autofree gchar *json = NULL;
+    const ClothSpoolJob *last;
+    gdouble point[2];
+
+    /* there are four, as soon as the manager has decided on what came */
+    for (guint tries = 0; jobs->len == 0 || (jobs->len < 4 && tries < 300);
+        tries++) {
+      ClothSpoolJob *job = cloth_spool_claim (worker, NULL);
+
+      if (job)
+        g_ptr_array_add (jobs, job);
+      else
+        g_usleep (1000);
+    }
+    last = jobs->pdata[jobs->len - 1];
+    point[0] = g_ascii_strtod (strchr (last->json, '[') + 1, &end);
+    point[1] = g_ascii_strtod (end + 1, NULL);
+    g_ascii_dtostr (number, sizeof number, bowl (NULL, point, 0));
+    json = g_strdup_printf ("{\"value\": [%s]}", point[0] > 3. ? "" : number);
+    g_assert_true (cloth_spool_finish (worker, last, json, FALSE, NULL));
+    g_ptr_array_remove_index (jobs, jobs->len - 1);
+  }
+  for (guint i = 0; i < jobs->len; i++)
+    g_assert_true (cloth_spool_give_back (worker, jobs->pdata[i], NULL));
+}
+
+/* A search as they come, whose manager is killed and resumed: each value is that of its point, though
+ * no one else knows which point had which number. */
+static void
+test_search_as_they_come (Fixture * f, gconstpointer data)
+{
+  g_autoptr (ClothSearch) s = new_search (TRUE);
+  g_autoptr (ClothSpool) spool = NULL;
+  g_autoptr (GError) error = NULL;
+  g_auto (GStrv) lines = NULL;
+  pid_t manager, worker;
+
+  manager = fork ();
+  if (manager == 0) {
+    cloth_search_run_spool (new_search (TRUE), cloth_spool_manage (f->folder,
+            &options, "p", FALSE, NULL), NULL);
+    _exit (1);
+  }
+  evaluate_backwards (f, 20);
+  kill (manager, SIGKILL);
+  waitpid (manager, NULL, 0);
+  worker = start_evaluating (f);
+  spool = manage (f, TRUE);
+  g_assert_true (cloth_search_run_spool (s, spool, &error));
+  g_assert_no_error (error);
+  waitpid (worker, NULL, 0);
+  lines = g_strsplit (cloth_search_get_log (s), "\n", -1);
+  for (guint i = 1; *lines[i]; i++) {
+    gchar *end;
+    const gdouble value = g_ascii_strtod (strchr (lines[i], ' '), &end);
+    gdouble point[2];
+
+    point[0] = g_ascii_strtod (end, &end);
+    point[1] = g_ascii_strtod (end, &end);
+    if (isfinite (value))
+      g_assert_cmpfloat (value, ==, bowl (NULL, point, 0));
+    else
+      g_assert_true (point[0] > 3.);
+  }
+}
+
 #define ADD(name, function) \
   g_test_add ("/spool/" name, Fixture, NULL, set_up, function, tear_down)
 
@@ -688,5 +766,6 @@ main (int argc, char **argv)
   ADD ("other-versions", test_other_versions);
   ADD ("hostile-files", test_hostile_files);
   ADD ("search", test_search);
+  ADD ("search-as-they-come", test_search_as_they_come);
   return g_test_run ();
 }

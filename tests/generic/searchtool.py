@@ -139,6 +139,9 @@ for code, says, arguments in (
           'refused: ' + done.stderr.strip())
 manager.send_signal(signal.SIGTERM)
 manager.wait()
+# its points have numbers of their own
+done = run('--model', guess, '--output', folder + '/x', '--spool', spool, '--resume', '--as-they-come')
+check(done.returncode == 1 and 'options' in done.stderr, 'refused: ' + done.stderr.strip())
 done = subprocess.run([tool, 'fit', take, '--model', guess, '--output', folder + '/x', '--resume'],
                       capture_output=True, encoding='utf-8', check=False)
 check(done.returncode == 2 and 'search' in done.stderr, 'refused: ' + done.stderr.strip())

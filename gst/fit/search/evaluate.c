@@ -135,12 +135,43 @@ put_trials (ClothSearch * search, ClothSpool * spool, gdouble * point,
   return TRUE;
 }
 
+/* Which trial has which number follows from the order of decisions, which results don't tell: who
+ * resumes a search that decides as values come needs its log. It is noted before jobs are put that
+ * follow from it.
+ * @noted: (inout): bytes of the log that are noted */
+static gboolean
+note_decisions (const ClothSearch * search, ClothSpool * spool, gsize * noted,
+    GError ** error)
+{
+  const gchar *lines = cloth_search_get_log (search) + *noted;
+
+  *noted += strlen (lines);
+  return !cloth_search_is_as_they_come (search) || !*lines
+      || cloth_spool_note (spool, lines, error);
+}
+
+static gboolean
+go_on_from_notes (ClothSearch * search, ClothSpool * spool, gsize * noted,
+    GError ** error)
+{
+  g_autofree gchar *log = NULL;
+
+  *noted = 0;
+  if (!cloth_search_is_as_they_come (search))
+    return TRUE;
+  log = cloth_spool_begin_notes (spool, error);
+  if (!log || (*log && !cloth_search_replay (search, log, error)))
+    return FALSE;
+  *noted = strlen (log);
+  return TRUE;
+}
+
 /* @search: a search; it has ended then
  * @spool: a manager's, whose workers call cloth_search_work_spool ()
  * @error: of the spool; %CLOTH_FIT_ERROR_SEARCH: a result is none
  *
- * A resumed spool has the values of trials that were evaluated before the manager was killed: in
- * order the search takes them without more ado; as they come, replay its log first.
+ * A resumed spool has the values of trials that were evaluated before the manager was killed, and, of a search
+ * as they come, its log: the search takes them without more ado.
  *
  * Returns: whether it could be done
  */
@@ -149,14 +180,18 @@ cloth_search_run_spool (ClothSearch * search, ClothSpool * spool,
     GError ** error)
 {
   g_autofree gdouble *point = g_new (gdouble, cloth_search_get_n (search));
+  gsize noted;
 
+  if (!go_on_from_notes (search, spool, &noted, error))
+    return FALSE;
   while (cloth_search_get_state (search) == CLOTH_SEARCH_RUNS) {
     g_autoptr (ClothSpoolJob) job = NULL;
     GError *fault = NULL;
     gdouble value = NAN;
     gboolean empty = TRUE;
 
-    if (!put_trials (search, spool, point, error) ||
+    if (!note_decisions (search, spool, &noted, error) ||
+        !put_trials (search, spool, point, error) ||
         !cloth_spool_look_after (spool, error))
       return FALSE;
     job = cloth_spool_take (spool, &fault);
@@ -175,7 +210,8 @@ cloth_search_run_spool (ClothSearch * search, ClothSpool * spool,
     cloth_search_tell (search,
         (guint) g_ascii_strtoull (job->id, NULL, 10), empty ? NAN : value);
   }
-  return cloth_spool_close (spool, error);
+  return note_decisions (search, spool, &noted, error)
+      && cloth_spool_close (spool, error);
 }
 
 static gboolean

@@ -481,6 +481,16 @@ cloth_search_get_state (const ClothSearch * search)
 
 /* @search: a search
  *
+ * Returns: whether it decides in the order in which values come
+ */
+gboolean
+cloth_search_is_as_they_come (const ClothSearch * search)
+{
+  return search->options.as_they_come;
+}
+
+/* @search: a search
+ *
  * Returns: what it has done
  */
 ClothSearchCounts
@@ -539,7 +549,7 @@ replay_line (ClothSearch * s, const gchar * line)
   return !*end && cloth_search_tell (s, (guint) id, value);
 }
 
-/* @search: a new search
+/* @search: a search that is new, or has decided what @log begins with
  * @log: what one of the same options has logged; what stands behind its last line end is not
  *   read, as its writer may have been killed
  * @error: %CLOTH_FIT_ERROR_SEARCH: it is the log of another search
@@ -554,19 +564,19 @@ cloth_search_replay (ClothSearch * search, const gchar * log, GError ** error)
 {
   g_auto (GStrv) lines = g_strsplit (log, "\n", -1);
   const gsize n_lines = g_strv_length (lines);
-  const gsize begin = search->log->len;
+  const gchar *own = search->log->str;
+  const gsize begin = search->counts.n_decided + 1;
 
   if (n_lines < 2 || !g_str_has_prefix (log, "pattern-search "))
     return refuse (error, "this is no log of a search");
-  if (search->counts.n_decided || strlen (lines[0]) + 1 != begin
-      || strncmp (search->log->str, log, begin) != 0) {
+  if (!g_str_has_prefix (log, own)) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_SEARCH,
         "pattern search: the log is of a search with other options, or of "
         "something else: it begins “%s”, and this search's would “%.*s”",
-        lines[0], (int) begin - 1, search->log->str);
+        lines[0], (int) strcspn (own, "\n"), own);
     return FALSE;
   }
-  for (gsize i = 1; i + 1 < n_lines; i++)
+  for (gsize i = begin; i + 1 < n_lines; i++)
     if (!replay_line (search, lines[i])) {
       g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_SEARCH,
           "pattern search: line %" G_GSIZE_FORMAT " of the log is none that "

@@ -89,6 +89,7 @@ gboolean cloth_search_next (ClothSearch * search, guint * id, gdouble * point);
 gboolean cloth_search_tell (ClothSearch * search, guint id, gdouble value);
 ClothSearchState cloth_search_get_state (const ClothSearch * search);
 ClothSearchCounts cloth_search_get_counts (const ClothSearch * search);
+gboolean cloth_search_is_as_they_come (const ClothSearch * search);
 gdouble cloth_search_get_best (const ClothSearch * search, gdouble * point);
 const gchar *cloth_search_get_log (const ClothSearch * search);
 gboolean cloth_search_replay (ClothSearch * search, const gchar * log,
