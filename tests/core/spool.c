@@ -15,6 +15,7 @@
 #include <utime.h>
 
 #include "gst/file/json.h"
+#include "gst/fit/error.h"
 #include "gst/fit/search/evaluate.h"
 
 #define LOST_S 1.5
@@ -614,13 +615,13 @@ new_search (gboolean as_they_come)
 }
 
 static pid_t
-start_evaluating (Fixture * f)
+start_evaluating (Fixture * f, ClothSearchFunc func)
 {
   const pid_t pid = fork ();
 
   if (pid == 0) {
     ClothSpool *worker = cloth_spool_join (f->folder, &options, 5., NULL);
-    const gboolean good = worker && cloth_search_work_spool (worker, 2, bowl,
+    const gboolean good = worker && cloth_search_work_spool (worker, 2, func,
         NULL, NULL);
 
     cloth_spool_free (worker);
@@ -651,7 +652,7 @@ test_search (Fixture * f, gconstpointer data)
     _exit (1);
   }
   for (guint i = 0; i < 2; i++)
-    workers[i] = start_evaluating (f);
+    workers[i] = start_evaluating (f, bowl);
   while (count_ending (f, "done", ".json") < 15)
     g_usleep (1000);
   kill (workers[0], SIGKILL);
@@ -668,6 +669,50 @@ test_search (Fixture * f, gconstpointer data)
   g_assert_cmpstr (cloth_search_get_log (s), ==, cloth_search_get_log (one));
   g_assert_cmpuint (count_ending (f, "done", ".json"), ==,
       cloth_search_get_counts (one).n_decided);
+}
+
+static gdouble
+deadly_start (gpointer data, const gdouble * x, guint worker)
+{
+  if (x[0] == 2.5 && x[1] == 2.5)
+    raise (SIGKILL);
+  return bowl (data, x, worker);
+}
+
+/* A trial whose workers were all killed is not one without a value: the search says so and, resumed, finds what it
+ * would have found. */
+static void
+test_search_deadly_trial (Fixture * f, gconstpointer data)
+{
+  g_autoptr (ClothSearch) one = new_search (FALSE);
+  g_autoptr (ClothSearch) s = new_search (FALSE);
+  g_autoptr (ClothSearch) again = new_search (FALSE);
+  g_autoptr (ClothSpool) spool = manage (f, FALSE);
+  g_autoptr (GError) error = NULL;
+  pid_t worker;
+
+  cloth_search_run (one, bowl, NULL, 1);
+  worker = fork ();
+  if (worker == 0) {
+    for (guint i = 0; i < CLOTH_SPOOL_MOST_LOST; i++)
+      waitpid (start_evaluating (f, deadly_start), NULL, 0);
+    while (count_ending (f, "failed", ".json") == 0)
+      g_usleep (1000);
+    worker = start_evaluating (f, bowl);
+    waitpid (worker, NULL, 0);
+    _exit (0);
+  }
+  g_assert_false (cloth_search_run_spool (s, spool, &error));
+  g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_SEARCH);
+  g_assert_nonnull (strstr (error->message, "3 workers were lost"));
+  g_clear_error (&error);
+  g_clear_pointer (&spool, cloth_spool_free);
+  spool = manage (f, TRUE);
+  g_assert_true (cloth_search_run_spool (again, spool, &error));
+  g_assert_no_error (error);
+  waitpid (worker, NULL, 0);
+  g_assert_cmpstr (cloth_search_get_log (again), ==,
+      cloth_search_get_log (one));
 }
 
 /* Ends @n trials, of those that are there the last one first. */
@@ -727,7 +772,7 @@ test_search_as_they_come (Fixture * f, gconstpointer data)
   evaluate_backwards (f, 20);
   kill (manager, SIGKILL);
   waitpid (manager, NULL, 0);
-  worker = start_evaluating (f);
+  worker = start_evaluating (f, bowl);
   spool = manage (f, TRUE);
   g_assert_true (cloth_search_run_spool (s, spool, &error));
   g_assert_no_error (error);
@@ -766,6 +811,7 @@ main (int argc, char **argv)
   ADD ("other-versions", test_other_versions);
   ADD ("hostile-files", test_hostile_files);
   ADD ("search", test_search);
+  ADD ("search-deadly-trial", test_search_deadly_trial);
   ADD ("search-as-they-come", test_search_as_they_come);
   return g_test_run ();
 }

@@ -129,7 +129,7 @@ put_trials (ClothSearch * search, ClothSpool * spool, gdouble * point,
     g_autofree gchar *json = write_numbers ("point", point,
         cloth_search_get_n (search));
 
-    if (!cloth_spool_put (spool, name, json, FALSE, error))
+    if (!cloth_spool_put (spool, name, json, TRUE, error))
       return FALSE;
   }
   return TRUE;
@@ -166,9 +166,26 @@ go_on_from_notes (ClothSearch * search, ClothSpool * spool, gsize * noted,
   return TRUE;
 }
 
+static gboolean
+tell_failure (const ClothSpoolJob * job, GError ** error)
+{
+  g_autoptr (JsonParser) parser = cloth_json_parse (job->json,
+      strlen (job->json), NULL);
+  g_autofree gchar *why = NULL;
+
+  if (parser)
+    cloth_json_get_string (&job_file,
+        json_node_get_object (json_parser_get_root (parser)), "error", &why,
+        NULL);
+  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_SEARCH,
+      "pattern search: point %s was not evaluated: %s; resume the search to "
+      "try it again", job->id, why ? why : "nobody says why");
+  return FALSE;
+}
+
 /* @search: a search; it has ended then
  * @spool: a manager's, whose workers call cloth_search_work_spool ()
- * @error: of the spool; %CLOTH_FIT_ERROR_SEARCH: a result is none
+ * @error: of the spool; %CLOTH_FIT_ERROR_SEARCH: a result is none, or a trial ended its workers
  *
  * A resumed spool has the values of trials that were evaluated before the manager was killed, and, of a search
  * as they come, its log: the search takes them without more ado.
@@ -203,9 +220,11 @@ cloth_search_run_spool (ClothSearch * search, ClothSpool * spool,
       cloth_spool_wait (spool);
       continue;
     }
-    /* A trial that ended its workers has no value, as one with an empty list. */
-    if (!job->failed && !read_numbers (job->json, "value", 1, &value, &empty,
-            error))
+    /* Whether a worker is killed must not change what is found: a trial that none could end is
+     * not one without a value, which has an empty list. */
+    if (job->failed)
+      return tell_failure (job, error);
+    if (!read_numbers (job->json, "value", 1, &value, &empty, error))
       return FALSE;
     cloth_search_tell (search,
         (guint) g_ascii_strtoull (job->id, NULL, 10), empty ? NAN : value);
