@@ -427,6 +427,68 @@ test_silhouettes (void)
 }
 
 static void
+expect_unobserved (const Scene * s, const ClothObservations * observations,
+    const gchar * text)
+{
+  g_autoptr (GError) error = NULL;
+  ClothObservedCounts counts;
+
+  g_assert_null (observe (s, observations, &counts, &error));
+  g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
+  g_test_message ("%s", error->message);
+  g_assert_nonnull (strstr (error->message, text));
+}
+
+/* A camera whose clock is another one is named, and not left out; so are cameras of another rig, and frames that
+ * cameras are too slow for. */
+static void
+test_mistakes (void)
+{
+  g_autoptr (ClothModel) reality = model_new (TRUE);
+  const TestGapFilming filming = { 2, NOISE_PX, NULL };
+  g_auto (Scene) s = { NULL };
+  g_autoptr (ClothRig) rig = test_gap_ring (2, middle);
+  g_autoptr (ClothRig) turned = test_gap_ring (2, middle);
+  gdouble half[3 * N * (N_FRAMES / 2)], times[N_FRAMES / 2];
+
+  scene_init (&s, reality, FALSE);
+  {
+    g_autoptr (ClothObservations) observations = film (&s, &filming);
+
+    for (guint i = 0; i < observations->list->len; i++) {
+      ClothObservation *o = &g_array_index (observations->list,
+          ClothObservation, i);
+
+      o->time_s += o->camera == 1 ? 100. : 0.;
+    }
+    expect_unobserved (&s, observations, "“cam1” are from 100.000");
+  }
+  /* one that looks the other way */
+  for (guint k = 0; k < 3; k++) {
+    turned->cameras[1].R[k] *= -1.;
+    turned->cameras[1].R[6 + k] *= -1.;
+  }
+  turned->cameras[1].t[0] *= -1.;
+  turned->cameras[1].t[2] *= -1.;
+  {
+    g_autoptr (ClothObservations) observations = test_gap_film (turned, rig,
+        s.truth, s.times, N_FRAMES, N, &filming, 5);
+
+    expect_unobserved (&s, observations, "rays meet nowhere");
+  }
+  for (guint f = 0; f < N_FRAMES / 2; f++) {
+    times[f] = s.times[2 * f];
+    memcpy (half + 3 * N * f, s.truth + 6 * N * f, 3 * N * sizeof *half);
+  }
+  {
+    g_autoptr (ClothObservations) observations = test_gap_film (rig, rig, half,
+        times, N_FRAMES / 2, N, &filming, 5);
+
+    expect_unobserved (&s, observations, "rate of its cameras");
+  }
+}
+
+static void
 test_nothing (void)
 {
   g_autoptr (ClothModel) reality = model_new (TRUE);
@@ -594,6 +656,7 @@ main (int argc, char **argv)
   g_test_add_func ("/observed/start", test_start);
   g_test_add_func ("/observed/parallel", test_parallel);
   g_test_add_func ("/observed/silhouettes", test_silhouettes);
+  g_test_add_func ("/observed/mistakes", test_mistakes);
   g_test_add_func ("/observed/nothing", test_nothing);
   g_test_add_func ("/observed/covariances", test_covariances);
   g_test_add_func ("/observed/diagnosis", test_diagnosis);

@@ -79,6 +79,7 @@ typedef struct
   GArray *torn;                 /* of Torn: what was taken away last */
   ClothOutline *outline;        /* NULL: there are no silhouettes */
   gboolean *outlined;           /* places of which only outlines tell */
+  gsize n_apart;                /* places that several cameras see, and whose rays do not meet */
   ClothObservedCounts *counts;
 } Maker;
 
@@ -132,6 +133,39 @@ maker_init (Maker * m, ClothTake * take, ClothRecording * r,
   m->triangulator = cloth_triangulator_new (rig->n_cameras, rig->cameras,
       error);
   return m->triangulator != NULL;
+}
+
+/* A camera by another clock would be left out without a word. */
+static gboolean
+check_clocks (const Maker * m, GError ** error)
+{
+  const ClothRecording *r = m->r;
+  const GArray *list = m->observations->list;
+
+  for (guint c = 0; c < m->n_cameras; c++) {
+    const ClothCamera *camera = &m->observations->rig->cameras[c];
+    gdouble first = NAN, last = NAN;
+    guint n = 0, n_within = 0;
+
+    for (guint i = 0; i < list->len; i++) {
+      const ClothObservation *o = &g_array_index (list, ClothObservation, i);
+
+      if (o->camera != c)
+        continue;
+      last = o->time_s - camera->offset_s;
+      first = n++ ? first : last;
+      n_within += cloth_recording_find_frame (r, last) >= 0;
+    }
+    if (n == 0 || n_within > 0)
+      continue;
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: all "
+        "%u pictures of camera “%s” are from %.3f to %.3f s, and the frames from "
+        "%.3f to %.3f s: give both times by one clock, say by offset_s in the rig "
+        "how late the camera's is, or leave its observations out", r->name, n,
+        camera->name, first, last, r->times[0], r->times[r->n_frames - 1]);
+    return FALSE;
+  }
+  return TRUE;
 }
 
 static gboolean
@@ -231,6 +265,8 @@ find_places (Maker * m, GError ** error)
       if (t->reason[v] == CLOTH_POINT_FINE)
         keep_point (m, f, v, t);
       m->counts->contradicted += t->reason[v] == CLOTH_POINT_DISAGREE;
+      m->n_apart += t->reason[v] != CLOTH_POINT_FINE
+          && t->reason[v] != CLOTH_POINT_FEW_VIEWS;
     }
     memset (lone, 0, m->r->n * sizeof *lone);
     for (guint c = 0; c < m->n_cameras; c++)
@@ -295,6 +331,14 @@ guess (Maker * m, GError ** error)
   ClothRecording *r = m->r;
   const gsize row = 3 * (gsize) r->n;
 
+  if (m->counts->triangulated == 0 && m->n_apart > 0
+      && (!r->start || m->counts->single == 0)) {
+    g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: "
+        "%" G_GSIZE_FORMAT " times several cameras see the same vertex, and "
+        "their rays meet nowhere: give the rig of these cameras, each by its name, "
+        "and see that their clocks agree", r->name, m->n_apart);
+    return FALSE;
+  }
   if (m->counts->triangulated == 0 && !r->start) {
     g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: no "
         "two cameras see the same vertex at a time, so nothing says where the "
@@ -320,6 +364,35 @@ guess (Maker * m, GError ** error)
             lone->vertex));
   }
   return TRUE;
+}
+
+/* Springs draw from a frame to the next one, at vertices that are seen in both. */
+static gboolean
+check_rate (const Maker * m, GError ** error)
+{
+  const ClothRecording *r = m->r;
+  const GArray *list = m->observations->list;
+  const ClothObservation *one = NULL, *next = NULL;
+
+  for (gsize at = r->n; at < (gsize) r->n * r->n_frames; at++)
+    if (r->seen[at] > 0. && r->seen[at - r->n] > 0.)
+      return TRUE;
+  for (guint i = 0; i < list->len && !next; i++) {
+    const ClothObservation *o = &g_array_index (list, ClothObservation, i);
+
+    if (!one)
+      one = o;
+    else if (o->camera == one->camera)
+      next = o;
+  }
+  g_set_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING, "%s: no "
+      "vertex is seen in two frames that follow each other: frames are %.4g s "
+      "apart, and the first pictures of “%s” %.4g s; give the take, by fps or "
+      "times.npy, the rate of its cameras", r->name,
+      cloth_recording_get_frame_s (r),
+      m->observations->rig->cameras[one->camera].name,
+      next ? next->time_s - one->time_s : NAN);
+  return FALSE;
 }
 
 /* What was torn comes back: places on lone rays move, and others may be found to be right by the next turn. */
@@ -609,8 +682,9 @@ cloth_recording_new_observed (ClothTake * take,
   if (!r
       || !maker_init (&m, take, r, observations, options->threads, counts,
           error)
-      || !find_floor (&m, error) || !find_places (&m, error)
-      || !guess (&m, error) || !finish (&m, error))
+      || !check_clocks (&m, error) || !find_floor (&m, error)
+      || !find_places (&m, error) || !guess (&m, error)
+      || !check_rate (&m, error) || !finish (&m, error))
     return NULL;
   if (!cloth_recording_check (r, TRUE, error))
     return NULL;
