@@ -110,13 +110,17 @@ make_words (const gchar * json, const gchar * output, gint threads,
   return g_steal_pointer (&words);
 }
 
-/* What a diagnosis says that failed, without its progress. */
+/* What a diagnosis says that failed, without its progress and without how commands are used. */
 static gchar *
 find_complaint (gchar * text)
 {
   g_autofree gchar *valid = g_utf8_make_valid (text ? text : "", -1);
   const gchar *at = g_strrstr (valid, PROGRAM ": ");
   gchar *complaint = g_strdup (at ? at + strlen (PROGRAM ": ") : valid);
+  gchar *usage = g_strrstr (complaint, "\nTry \"" PROGRAM);
+
+  if (usage)
+    *usage = 0;
 
   g_strdelimit (g_strstrip (complaint), "\n", ' ');
   return complaint;

@@ -174,6 +174,11 @@ def bad(folder):
         jsonschema.Draft202012Validator(json.load(file)).validate(table)
     expect(done.returncode == 1 and '1 of 2 takes could not be diagnosed' in done.stderr and
            'nowhere” is no take' in table['takes'][1]['error'] and table['takes'][0]['verdict'], done.stderr.strip()[-100:])
+    # of a wrong line the table says what is wrong, not how to use a command
+    write(folder, 'twice.txt', '%s --hold-out %s\n' % (drag, drag))
+    run(folder, 'survey', 'twice.txt', '--model', knit, '--output', 'twice')
+    fault = json.loads(read(folder, 'twice'))['takes'][0]['error']
+    expect('is given twice' in fault and '--help' not in fault, fault)
     # mended, only that one is diagnosed
     shutil.copytree(os.path.join(folder, 'base'), os.path.join(folder, 'nowhere'))
     done = run(folder, 'survey', 'some.txt', '--model', knit, '--effects', 'wind', '--output', 'some', '--resume')
