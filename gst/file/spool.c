@@ -242,8 +242,8 @@ check_description (const ClothSpool * s, JsonObject * object,
     return FALSE;
   if (g_strcmp0 (kind, options->kind))
     return cloth_json_invalid (&spool_file, error, "its jobs are of the kind "
-        "“%s”, not “%s”: name another folder", kind ? kind : "",
-        options->kind);
+        "“%s”, not “%s”: give what its manager was given, or name another "
+        "folder", kind ? kind : "", options->kind);
   if (g_strcmp0 (program, options->version))
     return cloth_json_invalid (&spool_file, error, "version %s of the program "
         "wrote it, this is %s, whose results may differ: go on with that "

@@ -119,8 +119,8 @@ spool = os.path.join(folder, 'other')
 manager = start('--model', guess, '--output', folder + '/spooled', '--spool', spool)
 wait_for('no job comes', os.path.join(spool, 'todo'), 1)
 for code, says, arguments in (
-        (1, 'fit-search', ('--model', other, '--spool', spool, '--worker')),
-        (1, 'fit-search', ('--model', guess, '--spool', spool, '--worker', '--seed', '1')),
+        (1, 'give what its manager was given', ('--model', other, '--spool', spool, '--worker')),
+        (1, 'give what its manager was given', ('--model', guess, '--spool', spool, '--worker', '--seed', '1')),
         # neither another recording's values, nor none
         (1, 'of something else', ('--model', guess, '--output', folder + '/replayed', '--replay',
                                   folder + '/threads1/search.log', '--seed', '1')),
