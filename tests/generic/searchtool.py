@@ -113,6 +113,13 @@ done = run('--model', guess, '--output', folder + '/few', '--evaluations', '5')
 check(done.returncode == 0 and json.loads(read('few', 'fit.json'))['search']['ended'] == 'limit'
       and 'ended at --evaluations' in done.stdout, 'a limit is said')
 
+# A guess outside of its range begins at the end of it, as that of a fit may.
+outside = model(60, 0.4, True)
+outside['free'][0]['range'] = [70, 400]
+done = run('--model', write('outside.json', outside), '--output', folder + '/outside', '--evaluations', '3')
+check(done.returncode == 0 and json.loads(read('outside', 'fit.json'))['numbers'][0]['value'] >= 69.99,
+      'a guess outside of its range ' + done.stderr.strip()[-100:])
+
 # A worker of other numbers would give other values.
 other = write('other.json', model(61, 0.4, True))
 spool = os.path.join(folder, 'other')

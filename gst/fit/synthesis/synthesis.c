@@ -397,8 +397,8 @@ cloth_synthesis_problem_get_n (const ClothSynthesisProblem * problem)
 }
 
 /* @problem: a problem
- * @start: (out) (array): where the model has the free numbers; of those that are positive by their
- *   nature the logarithms
+ * @start: (out) (array): where the model has the free numbers, or the nearest end of their ranges; of
+ *   those that are positive by their nature the logarithms
  * @low: (out) (array): their least values
  * @high: (out) (array): their greatest ones
  */
@@ -410,9 +410,11 @@ cloth_synthesis_problem_get_room (const ClothSynthesisProblem * problem,
     const ClothDirection *d = cloth_candidates_direction (problem->candidates,
         i);
 
-    start[i] = cloth_candidates_place (problem->candidates, problem->model, i);
     low[i] = d->low;
     high[i] = d->high;
+    /* a model's number may be out of the range that it is looked for in */
+    start[i] = CLAMP (cloth_candidates_place (problem->candidates,
+            problem->model, i), d->low, d->high);
   }
 }
 
