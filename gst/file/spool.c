@@ -39,6 +39,9 @@
  * wrote. */
 #define MAX_ID 64
 #define MAX_NAMES 1000000u
+/* Names in one answer of a server that lists a folder: NFS's 4 KiB hold so many. A look for one file is an
+ * answer, too. */
+#define NAMES_AT_ONCE 100u
 
 struct _ClothSpool
 {
@@ -50,8 +53,10 @@ struct _ClothSpool
   gboolean manages;
   GPtrArray *waiting;           /* ids put, whose results were not taken */
   GHashTable *put;              /* the same as a set */
+  gboolean listed;              /* whether results were listed at the last look, and */
+  GHashTable *there;            /* which of them were there */
   GHashTable *lost;             /* id → how many workers it lost */
-  guint n_lost;
+  guint n_lost, n_taken;
   guint next;                   /* of waiting: where to look for a result */
   gint64 looked_us, unmanaged_us;
   gint64 wait_us;
@@ -382,6 +387,7 @@ spool_new (const gchar * folder, const ClothSpoolOptions * options)
   s->notes = -1;
   s->waiting = g_ptr_array_new_with_free_func (g_free);
   s->put = g_hash_table_new (g_str_hash, g_str_equal);
+  s->there = g_hash_table_new_full (g_str_hash, g_str_equal, g_free, NULL);
   s->lost = g_hash_table_new_full (g_str_hash, g_str_equal, g_free, NULL);
   return s;
 }
@@ -424,6 +430,7 @@ cloth_spool_free (ClothSpool * spool)
     close (spool->notes);
   cloth_life_free (spool->life);
   g_hash_table_unref (spool->put);
+  g_hash_table_unref (spool->there);
   g_hash_table_unref (spool->lost);
   g_ptr_array_unref (spool->waiting);
   g_free (spool->folder);
@@ -589,6 +596,34 @@ refresh (const ClothSpool * s, const gchar * folder)
     g_dir_close (dir);
 }
 
+/* Which of the jobs that are waited for have a result. */
+static void
+look_for_results (ClothSpool * s)
+{
+  static const gchar *const of_results[] = { "done", "failed" };
+
+  /* a list has those, too, that were taken; else each is looked for */
+  s->listed = s->waiting->len > s->n_taken / NAMES_AT_ONCE;
+  g_hash_table_remove_all (s->there);
+  for (guint i = 0; i < G_N_ELEMENTS (of_results); i++) {
+    g_autoptr (GPtrArray) names = NULL;
+
+    if (!s->listed) {
+      refresh (s, of_results[i]);
+      continue;
+    }
+    names = list_names (s, of_results[i], NULL);
+    for (guint k = 0; names && k < names->len; k++) {
+      gchar *id = id_of (names->pdata[k]);
+
+      if (id && g_hash_table_contains (s->put, id))
+        g_hash_table_add (s->there, id);
+      else
+        g_free (id);
+    }
+  }
+}
+
 static ClothSpoolJob *
 load_result (const ClothSpool * s, const gchar * id, GError ** error)
 {
@@ -630,15 +665,15 @@ cloth_spool_take (ClothSpool * spool, GError ** error)
 
   if (spool->next >= n) {
     spool->next = 0;
-    refresh (spool, "done");
-    refresh (spool, "failed");
+    look_for_results (spool);
   }
   for (; spool->next < n; spool->next++) {
-    g_autofree gchar *id = NULL;
+    g_autofree gchar *id = g_strdup (spool->waiting->pdata[spool->next]);
     g_autofree gchar *todo = NULL;
     GError *fault = NULL;
-    ClothSpoolJob *job = load_result (spool,
-        spool->waiting->pdata[spool->next], &fault);
+    ClothSpoolJob *job = !spool->listed
+        || g_hash_table_remove (spool->there, id) ? load_result (spool, id,
+        &fault) : NULL;
 
     if (fault) {
       g_propagate_error (error, fault);
@@ -646,9 +681,9 @@ cloth_spool_take (ClothSpool * spool, GError ** error)
     }
     if (!job)
       continue;
-    id = g_strdup (job->id);
     todo = path_of (spool, "todo", id);
     g_unlink (todo);            /* put back, and its worker lived */
+    spool->n_taken++;
     g_hash_table_remove (spool->put, id);
     g_ptr_array_remove_index (spool->waiting, spool->next);
     note_work (spool);

@@ -326,6 +326,59 @@ test_deadly_job (Fixture * f, gconstpointer data)
   g_assert_nonnull (strstr (result->json, "3 workers were lost"));
 }
 
+/* Who waits for the results of many jobs doesn't look for each of them: on a file system of a network that takes longer
+ * than the jobs. */
+static void
+test_many_jobs (Fixture * f, gconstpointer data)
+{
+  g_autoptr (ClothSpool) spool = manage (f, FALSE);
+  g_autoptr (ClothSpool) worker = join (f);
+  g_autoptr (ClothSpoolJob) job = NULL;
+  g_autofree gchar *first = NULL;
+  gint64 begin;
+
+  for (guint i = 0; i < 3000; i++) {
+    g_autofree gchar *id = g_strdup_printf ("%04u", i);
+
+    put (spool, id);
+  }
+  begin = g_get_monotonic_time ();
+  for (guint i = 0; i < 1000; i++)
+    g_assert_null (cloth_spool_take (spool, NULL));
+  g_test_message ("%.2f ms to look for results",
+      1e-6 * (gdouble) (g_get_monotonic_time () - begin));
+  g_assert_cmpint (g_get_monotonic_time () - begin, <, G_USEC_PER_SEC);
+  claim (worker, &job);
+  finish (worker, job);
+  first = take (spool);
+  g_assert_cmpstr (first, ==, "0000");
+}
+
+/* The last of many results is found among them, too. */
+static void
+test_many_results (Fixture * f, gconstpointer data)
+{
+  g_autoptr (ClothSpool) spool = manage (f, FALSE);
+  g_autoptr (ClothSpool) worker = join (f);
+
+  for (guint i = 0; i < 400; i++) {
+    g_autofree gchar *id = g_strdup_printf ("%04u", i);
+
+    put (spool, id);
+  }
+  for (guint i = 0; i < 400; i++) {
+    g_autoptr (ClothSpoolJob) job = NULL;
+    g_autofree gchar *id = g_strdup_printf ("%04u", i);
+    g_autofree gchar *got = NULL;
+
+    g_assert_cmpstr (claim (worker, &job), ==, id);
+    finish (worker, job);
+    got = take (spool);
+    g_assert_cmpstr (got, ==, id);
+  }
+  g_assert_null (take (spool));
+}
+
 /* ---- other hosts ---- */
 
 /* A worker of a host whose locks can't be seen: only its number speaks. Times of files are from
@@ -803,6 +856,8 @@ main (int argc, char **argv)
   ADD ("killed-worker", test_killed_worker);
   ADD ("late-worker", test_late_worker);
   ADD ("deadly-job", test_deadly_job);
+  ADD ("many-jobs", test_many_jobs);
+  ADD ("many-results", test_many_results);
   ADD ("other-host", test_other_host);
   ADD ("two-managers", test_two_managers);
   ADD ("killed-manager", test_killed_manager);
