@@ -479,6 +479,10 @@ test_one_camera (void)
     n += strstr (u->reason, "two cameras") != NULL;
   }
   g_assert_cmpuint (n, ==, 7);
+  /* the stages say the same, and not that there are no observations */
+  for (guint i = 0; i < 4; i++)
+    g_assert_nonnull (strstr (g_array_index (result->stages, ClothGapStage,
+                i).reason, "two cameras"));
 }
 
 /* Points that were recorded at a wrong place go to where the pictures have them. */

@@ -274,6 +274,7 @@ windowed_square (const ClothGapPlayback * p)
   return squares / seen;
 }
 
+/* Why a stage has no share, where nothing is known of cameras. */
 static const gchar *const unread[] = {
   "Whether a camera's calibration, clock or shutter is off shows in what each "
       "camera saw, and this take has positions only.",
@@ -298,6 +299,7 @@ fill_stages (const ClothDiagnosis * d, const ClothRecording * r)
     e->triangulation, cloth_recording_noise_square (r), 0.
   };
   const guint physics = G_N_ELEMENTS (names) - 1, noise = physics - 1;
+  const gboolean cameras_are_alone = cloth_diagnosis_has_observations (d);
   gdouble all = windowed_square (&d->result->playback), sum = 0.;
 
   if (d->has_camera_errors)
@@ -310,7 +312,8 @@ fill_stages (const ClothDiagnosis * d, const ClothRecording * r)
     const gboolean known = d->has_camera_errors || i >= noise;
 
     cloth_gap_result_add_stage (d->result, names[i],
-        known ? shares[i] / all : NAN, known ? NULL : unread[i]);
+        known ? shares[i] / all : NAN, known ? NULL : cameras_are_alone ?
+        "No point was seen by two cameras at a time." : unread[i]);
   }
 }
 
