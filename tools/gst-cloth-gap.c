@@ -169,7 +169,8 @@ main (int argc, char **argv)
     {"seed", 0, 0, G_OPTION_ARG_INT64, &arguments.seed,
         "Of all random numbers (0)", "N"},
     {"threads", 0, 0, G_OPTION_ARG_INT, &arguments.threads,
-        "Threads, 0 for all processors (0)", "N"},
+          "Threads, 0 for all processors (0); of a survey those of each take, 0 for one",
+        "N"},
     {G_OPTION_REMAINING, 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &arguments.rest,
           NULL,
         "diagnose TAKE… | compare RECORDED SIMULATED | survey LIST | "

@@ -38,7 +38,7 @@ def expect(words, has=(), lacks=(), only=None, **more):
         faults.append('%s: %s instead of %s' % (words, got, only))
 
 
-take, gap = 'gst-cloth-take-1.0', 'gst-cloth-gap-1.0'
+take, gap, fit = 'gst-cloth-take-1.0', 'gst-cloth-gap-1.0', 'gst-cloth-fit-1.0'
 expect([take, ''], only=['import', 'info', 'recover'])
 expect([take, 'i'], only=['import', 'info'])
 expect([take, 'x'], only=[])
@@ -51,6 +51,9 @@ expect([take, 'import', 'a.csv', '-a', 'y'], only=['y-up'])
 expect([gap, ''], only=['diagnose', 'compare', 'survey', 'simulate', 'check-simulator', 'effects'])
 expect([gap, 'survey', '--'], has=['--spool', '--workers', '--worker', '--resume', '--model'], lacks=['--baseline'])
 expect([gap, 'simulate', '--'], has=['--scene', '--output', '--seed'], lacks=['--baseline'])
+expect([fit, 'fit', '--'], has=['--model', '--rig'], lacks=['--spool', '--tracker'])
+expect([fit, 'search', '--'], has=['--model', '--spool', '--evaluations'], lacks=['--tracker'])
+expect([fit, 'track', '--'], has=['--rig', '--tracker', '--held', '--seed'], lacks=['--model', '--spool'])
 expect([gap, 'diagnose', 'a.take', '--effects', 'air'], has=['air_drag'], lacks=['wind'])
 expect([gap, 'effects', '--format', ''], only=['text', 'json', 'markdown'])
 expect(['gst-cloth-pattern-1.0', ''], only=['checker', 'coded-checker', 'm-array', 'picture', 'garment'])
