@@ -271,6 +271,7 @@ test_resume (void)
   for (guint most = 0; most < 40; most += 3) {
     g_autoptr (ClothSearch) part = search_shuffled (&options, 3, most, most);
     g_autoptr (ClothSearch) s = cloth_search_new (&options, NULL);
+    g_autoptr (ClothSearch) again = cloth_search_new (&options, NULL);
     g_autofree gchar *log = g_strconcat (cloth_search_get_log (part), "12 0.",
         NULL);
     gdouble point[2];
@@ -281,6 +282,15 @@ test_resume (void)
       cloth_search_tell (s, id, patchy (point));
     g_assert_cmpstr (cloth_search_get_log (s), ==,
         cloth_search_get_log (whole));
+    /* a log that goes on where the search is, and one that begins otherwise */
+    g_assert_true (cloth_search_replay (again, cloth_search_get_log (part),
+            NULL));
+    g_assert_true (cloth_search_replay (again, cloth_search_get_log (whole),
+            NULL));
+    g_assert_cmpstr (cloth_search_get_log (again), ==,
+        cloth_search_get_log (whole));
+    g_assert_false (cloth_search_replay (again, cloth_search_get_log (part),
+            NULL));
   }
 }
 

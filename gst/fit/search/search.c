@@ -549,7 +549,7 @@ replay_line (ClothSearch * s, const gchar * line)
   return !*end && cloth_search_tell (s, (guint) id, value);
 }
 
-/* @search: a search that is new, or has decided what @log begins with
+/* @search: a search that is new, or was told nothing but what @log begins with
  * @log: what one of the same options has logged; what stands behind its last line end is not
  *   read, as its writer may have been killed
  * @error: %CLOTH_FIT_ERROR_SEARCH: it is the log of another search
