@@ -4,7 +4,8 @@
 #   pipelines/cluster/slurm.sh SPOOL N [OPTION…]
 #
 # N: workers. Further options are sbatch's, such as --partition or --cpus-per-task. A worker that
-# Slurm ends, or whose node is lost, is requeued; its take goes to whoever is free.
+# Slurm preempts, or whose node is lost, is requeued; one that reaches its time limit is not. Its take
+# goes to whoever is free.
 # SPDX-License-Identifier: LGPL-2.1-or-later
 set -eu
 spool=$(realpath -m "$1") n=$2
