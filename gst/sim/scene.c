@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gst/mesh/hold.h"
+#include "gst/mesh/fill/fill.h"
 #include "gst/mesh/seam.h"
 #include "gst/mesh/side.h"
 
@@ -217,10 +217,9 @@ hang_flat (ClothScene * scene)
 static gboolean
 read_start (ClothScene * scene, ClothTake * take, GError ** error)
 {
+  const ClothTakeInfo *info = cloth_take_get_info (take);
   guint n = scene->topology->n_vertices;
   g_autofree gfloat *seen = g_new (gfloat, 3 * (gsize) n);
-  g_autoptr (ClothHold) hold = cloth_hold_new (scene->topology);
-  const gfloat *filled;
   gboolean any = FALSE;
 
   if (cloth_take_get_n_positions (take) > 0
@@ -232,17 +231,18 @@ read_start (ClothScene * scene, ClothTake * take, GError ** error)
     hang_flat (scene);
     return TRUE;
   }
-  filled = cloth_hold_apply (hold, seen);
-  for (gsize i = 0; i < 3 * (gsize) n; i++)
-    scene->positions[i] = filled[i];
+  /* what is held was seen by its log: the cloth beside it begins there */
   for (guint i = 0; i < scene->held->len; i++) {
     const ClothHeld *held = &g_array_index (scene->held, ClothHeld, i);
 
-    if (cloth_held_holds (held, scene->times[0])
-        && !isnan (scene->clamps[3 * i]))
-      memcpy (scene->positions + 3 * (gsize) held->vertex,
-          scene->clamps + 3 * i, 3 * sizeof *scene->positions);
+    for (guint k = 0; k < 3 && cloth_held_holds (held, scene->times[0])
+        && !isnan (scene->clamps[3 * i]); k++)
+      seen[3 * (gsize) held->vertex + k] = (gfloat) scene->clamps[3 * i + k];
   }
+  cloth_fill_close (scene->topology, info->seams, info->noise_sigma_m, NULL,
+      seen);
+  for (gsize i = 0; i < 3 * (gsize) n; i++)
+    scene->positions[i] = seen[i];
   return TRUE;
 }
 
@@ -287,8 +287,8 @@ scene_new (ClothTake * take, gboolean open, GError ** error)
  * @error: #ClothFileError, #GIOErrorEnum; an element that is wrong is named
  *
  * The scene that was filmed: its mesh, clamps, obstacles, gravity and times. The cloth
- * starts at rest where the first frame saw it; vertices not seen then lie between their
- * neighbours, held ones where their clamps are. When nothing was seen, the sheet hangs
+ * starts at rest where the first frame saw it, held vertices where their clamps are; those
+ * not seen then go on as the cloth around them does. When nothing was seen, the sheet hangs
  * flat from its clamps, u along x and v downwards. The scene is checked.
  *
  * Returns: (transfer full): the scene, or %NULL

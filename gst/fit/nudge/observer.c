@@ -17,7 +17,6 @@
 #include "gst/fit/error.h"
 #include "gst/fit/recording/recording.h"
 #include "gst/mesh/fill/fill.h"
-#include "gst/mesh/hold.h"
 #include "gst/sim/sim.h"
 
 /* Frames of the polynomial that velocities come from, and its order (Savitzky & Golay
@@ -268,38 +267,21 @@ find_velocities (ClothObserver * self, gdouble * velocity)
   }
 }
 
-/* Closes the holes of the first frame by thin plates, or by neighbours where plates can't: at their
- * places, or, with @start, as far from these as there. */
+/* Closes the holes of the first frame. @start: as cloth_fill_close () has it. */
 static void
 fill_start (ClothObserver * self, gdouble sigma, const gdouble * start,
     gdouble * positions)
 {
-  const gsize n = self->n;
-  const ClothFillParameters parameters = { CLOTH_FILL_PLATE,
-    sigma > 0 ? sigma : CLOTH_FILL_NOISE, CLOTH_FILL_MAX_SIGMA, 0., 0.
-  };
-  g_autoptr (ClothFill) fill = cloth_fill_new (self->topology, NULL,
-      &parameters);
-  g_autoptr (ClothHold) hold = cloth_hold_new (self->topology);
-  g_autofree gfloat *places = g_new (gfloat, 3 * n);
-  g_autofree guint8 *states = g_malloc (n);
-  const ClothMeshFrame from = { places, states, NULL };
-  ClothMeshFrame to;
-  ClothFillCounts counts;
-  const gfloat *filled;
+  const gsize n = 3 * (gsize) self->n;
+  g_autofree gfloat *places = g_new (gfloat, n);
 
-  for (gsize i = 0; i < 3 * n; i++)
-    places[i] = (gfloat) positions[i];
   for (gsize i = 0; i < n; i++)
-    states[i] = isnan (places[3 * i]) ? CLOTH_VERTEX_UNSEEN :
-        CLOTH_VERTEX_MEASURED;
-  cloth_fill_run (fill, 0., &from, &to, &counts);
-  for (gsize i = 0; i < 3 * n; i++)
-    places[i] = to.positions[i] - (start ? (gfloat) start[i] : 0.f);
-  filled = cloth_hold_apply (hold, places);
-  for (gsize i = 0; i < 3 * n; i++)
+    places[i] = (gfloat) positions[i];
+  cloth_fill_close (self->topology, NULL, sigma, start, places);
+  /* what was seen keeps its digits */
+  for (gsize i = 0; i < n; i++)
     if (isnan (positions[i]))
-      positions[i] = filled[i] + (start ? start[i] : 0.);
+      positions[i] = places[i];
 }
 
 /* Where the first frame's rays may lead to, and what nobody saw of it may be: what else was seen tells

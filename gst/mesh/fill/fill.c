@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "gst/math/linalg.h"
+#include "gst/mesh/hold.h"
 
 /* Second differences of cloth are not independent: a fold is wider than an edge. By how
  * much the variance grows for it, measured on takes (docs/filling.md): little for a
@@ -479,6 +480,42 @@ cloth_fill_run (ClothFill * fill, gdouble time_s, const ClothMeshFrame * frame,
   filled->covariances = fill->covariances;
   if (counts)
     *counts = done;
+}
+
+/* @topology: the mesh
+ * @seams: (element-type ClothSeamLine) (nullable): what is sewn together
+ * @noise_m: standard deviation of a coordinate, metres; 0: not known
+ * @start: (nullable): places that the cloth may begin at, 3 numbers a vertex, metres
+ * @positions: (inout): one frame, 3 numbers a vertex, metres, NaN when not seen
+ *
+ * Gives what was not seen a place to begin at: thin plates close the holes; where no plate
+ * can, neighbours do, as cloth_hold_apply () says: with their places, or, with @start, as far from it as they are.
+ */
+void
+cloth_fill_close (const ClothTopology * topology, const GArray * seams,
+    gdouble noise_m, const gdouble * start, gfloat * positions)
+{
+  const gsize n = topology->n_vertices;
+  const ClothFillParameters parameters = { CLOTH_FILL_PLATE,
+    noise_m > 0 ? noise_m : CLOTH_FILL_NOISE, CLOTH_FILL_MAX_SIGMA, 0., 0.
+  };
+  g_autoptr (ClothFill) fill = cloth_fill_new (topology, seams, &parameters);
+  g_autoptr (ClothHold) hold = cloth_hold_new (topology);
+  g_autofree gfloat *off = g_new (gfloat, 3 * n);
+  g_autofree guint8 *states = g_malloc (n);
+  ClothMeshFrame from = { positions, states, NULL }, to = { NULL };
+  const gfloat *closed;
+
+  for (gsize i = 0; i < n; i++)
+    states[i] = isnan (positions[3 * i]) ? CLOTH_VERTEX_UNSEEN :
+        CLOTH_VERTEX_MEASURED;
+  cloth_fill_run (fill, 0., &from, &to, NULL);
+  for (gsize i = 0; i < 3 * n; i++)
+    off[i] = to.positions[i] - (start ? (gfloat) start[i] : 0.f);
+  closed = cloth_hold_apply (hold, off);
+  for (gsize i = 0; i < 3 * n; i++)
+    if (isnan (positions[i]))
+      positions[i] = closed[i] + (start ? (gfloat) start[i] : 0.f);
 }
 
 /* @fill: (transfer full) (nullable): what fills

@@ -67,6 +67,9 @@ void cloth_fill_reset (ClothFill * fill);
 void cloth_fill_run (ClothFill * fill, gdouble time_s,
     const ClothMeshFrame * frame, ClothMeshFrame * filled,
     ClothFillCounts * counts);
+void cloth_fill_close (const ClothTopology * topology,
+    const GArray * seams, gdouble noise_m, const gdouble * start,
+    gfloat * positions);
 void cloth_fill_free (ClothFill * fill);
 
 void cloth_smooth_space (const ClothStencils * stencils, gdouble weight,
