@@ -390,6 +390,8 @@ typedef struct
 static const Refused refused[] = {
   {{.name = "clamp",.off = {0., 0.03, 0.},.off_from_s = 0.5},
       {"up to 0.03 m", "first at 0.5 s", "clamps.npy"}},
+  {{.name = "elsewhere",.off = {0., 1., 0.}}, {"up to 1 m",
+          "first at 0 s", "clamps.npy of the recording"}},
   {{.name = "held",.held = 5}, {"vertex 6", "holds nothing there", "clamp"}},
   {{.name = "third",.third = TRUE}, {"vertex 34", "holds nothing there",
           "clamp"}},

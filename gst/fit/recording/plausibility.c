@@ -203,9 +203,17 @@ find_start (const ClothRecording * r, guint held, gdouble scale)
   return nearest;
 }
 
-static gboolean
-check_clamps (const ClothRecording * r, gdouble side, GError ** error)
+/* @recording: a recording as it was read
+ * @error: #ClothFitError
+ *
+ * Returns: %FALSE when a clamp does not begin where its vertex is seen
+ */
+gboolean
+cloth_recording_check_clamps (const ClothRecording * recording, GError ** error)
 {
+  const ClothRecording *r = recording;
+  const gdouble side = cloth_recording_longest_side (r);
+
   for (guint i = 0; i < r->scene->held->len; i++) {
     guint vertex = g_array_index (r->scene->held, ClothHeld, i).vertex;
     gdouble off = find_start (r, i, 1.);
@@ -297,11 +305,11 @@ check_noise (const ClothRecording * r, gboolean told, gdouble edge,
  * @told: whether its noise is what take.json says; else it was estimated
  * @error: #ClothFitError
  *
- * Returns: %FALSE when it contradicts itself or its cloth: units, places that no cloth can
- *   be in, clamps that are not where they hold, noise that hides the cloth
+ * Returns: %FALSE when it contradicts its cloth: units, places that no cloth can be in, noise
+ *   that hides it
  */
 gboolean
-cloth_recording_check (const ClothRecording * recording, gboolean told,
+cloth_recording_check_cloth (const ClothRecording * recording, gboolean told,
     GError ** error)
 {
   gdouble side = cloth_recording_longest_side (recording);
@@ -311,8 +319,21 @@ cloth_recording_check (const ClothRecording * recording, gboolean told,
       && check_rounding (recording, edge, error)
       && check_scale (recording, error)
       && check_places (recording, side, error)
-      && check_clamps (recording, side, error)
       && check_noise (recording, told, edge, error);
+}
+
+/* @recording: a recording as it was read
+ * @told: as of cloth_recording_check_cloth ()
+ * @error: #ClothFitError
+ *
+ * Returns: %FALSE when it contradicts its cloth or itself: clamps are not where they hold
+ */
+gboolean
+cloth_recording_check (const ClothRecording * recording, gboolean told,
+    GError ** error)
+{
+  return cloth_recording_check_cloth (recording, told, error)
+      && cloth_recording_check_clamps (recording, error);
 }
 
 /* @recording: a recording

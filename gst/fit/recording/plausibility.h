@@ -10,8 +10,12 @@ G_BEGIN_DECLS
 gdouble cloth_recording_longest_side (const ClothRecording * recording);
 gdouble cloth_recording_find_scale (const ClothRecording * recording,
     guint corner, gdouble sigma);
+gboolean cloth_recording_check_cloth (const ClothRecording * recording,
+    gboolean told, GError ** error);
+gboolean cloth_recording_check_clamps (const ClothRecording * recording,
+    GError ** error);
 gboolean cloth_recording_check (const ClothRecording * recording,
-    gboolean given, GError ** error);
+    gboolean told, GError ** error);
 gboolean cloth_recording_check_other (const ClothRecording * recording,
     const ClothRecording * other, GError ** error);
 

@@ -653,13 +653,14 @@ cloth_recording_new_twin (ClothTake * simulated,
   twin->y = g_new (gdouble, 3 * all);
   twin->velocity = g_new (gdouble, 3 * all);
   fill_positions (&t, twin);
-  if (!cloth_recording_check (twin, TRUE, error)
-      || !check_rate (&t, twin, error)
-      || !check_held (&t, recorded->scene, t.scene, "the recording", "it",
-          error)
+  /* its clamps last: those of @twin are the recording's, so only where its own are the same does
+   * this speak of the simulation's places */
+  if (!check_held (&t, recorded->scene, t.scene, "the recording", "it", error)
       || !check_held (&t, t.scene, recorded->scene, "it", "the recording",
           error)
-      || !check_paths (&t, error)) {
+      || !cloth_recording_check_cloth (twin, TRUE, error)
+      || !check_rate (&t, twin, error) || !check_paths (&t, error)
+      || !cloth_recording_check_clamps (twin, error)) {
     cloth_recording_free (twin);
     return NULL;
   }
