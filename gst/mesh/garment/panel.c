@@ -59,6 +59,30 @@ find (const gchar ** names, const gchar ** values, const gchar * name)
   return NULL;
 }
 
+/* CSS: words of a class are told apart by space. */
+static gboolean
+is_panel (const gchar * class)
+{
+  g_auto (GStrv) words = g_strsplit_set (class ? class : "", " \t\r\n", -1);
+
+  return g_strv_contains ((const gchar * const *) words, "panel");
+}
+
+/* By its attribute or by its style. */
+static gboolean
+is_transformed (const gchar ** names, const gchar ** values)
+{
+  const gchar *style = find (names, values, "style");
+  g_auto (GStrv) properties = g_strsplit (style ? style : "", ";", -1);
+  gboolean found = find (names, values, "transform") != NULL;
+
+  for (guint i = 0; properties[i] && !found; i++) {
+    properties[i][strcspn (properties[i], ":")] = 0;
+    found = strcmp (g_strstrip (properties[i]), "transform") == 0;
+  }
+  return found;
+}
+
 /* "760mm" in metres. */
 static gboolean
 read_length (const gchar * text, gdouble * metres)
@@ -190,7 +214,6 @@ start_element (GMarkupParseContext * context, const gchar * element,
     const gchar ** names, const gchar ** values, gpointer data, GError ** error)
 {
   Reader *reader = data;
-  const gchar *class = find (names, values, "class");
   const gchar *colon = strrchr (element, ':');
   const gchar *name = colon ? colon + 1 : element;
 
@@ -208,10 +231,10 @@ start_element (GMarkupParseContext * context, const gchar * element,
       read_root (reader, names, values, error);
     return;
   }
-  if (!reader->transform_depth && find (names, values, "transform"))
+  if (!reader->transform_depth && is_transformed (names, values))
     reader->transform_depth = reader->depth;
-  if (!reader->panel_depth && strcmp (name, "g") == 0 && class
-      && strcmp (class, "panel") == 0
+  if (!reader->panel_depth && strcmp (name, "g") == 0
+      && is_panel (find (names, values, "class"))
       && !begin_panel (reader, find (names, values, "id"), error))
     return;
   if (!reader->panel_depth || strcmp (name, "path"))
@@ -298,6 +321,12 @@ join_edges (ClothDrawnPanel * panel, GError ** error)
         < distance (end, edge_end (next, FALSE)))
       turn_edge (next);
     begin = (gdouble *) edge_end (next, FALSE);
+    if (i + 1 < n && distance (end, begin) > END_TOLERANCE
+        && distance (end, edge_end (&edges[0], FALSE)) <= END_TOLERANCE)
+      return cloth_file_invalid (error,
+          "the outline of panel “%s” is closed before its edge “%s”; a panel "
+          "is cut along one line, without holes: draw two panels, and sew "
+          "them together at the hole", panel->name, next->name);
     if (distance (end, begin) > END_TOLERANCE)
       return cloth_file_invalid (error,
           "the outline of panel “%s” is open: its edge "
