@@ -189,16 +189,20 @@ gst_mesh_sink_set_caps (GstBaseSink * sink, GstCaps * caps)
   return TRUE;
 }
 
+static ClothMeshFormat
+get_format (GstMeshSink * self)
+{
+  return self->settings.format == CLOTH_MESH_FORMAT_AUTO ?
+      cloth_mesh_format_guess (self->settings.location) : self->settings.format;
+}
+
 /* A stream of meshes has no clamps, obstacles and seams; a take that had them loses them. */
 static void
 warn_of_scene (GstMeshSink * self)
 {
   const gchar *location = self->settings.location;
-  const gboolean is_take = self->settings.format == CLOTH_MESH_FORMAT_AUTO ?
-      cloth_mesh_format_guess (location) == CLOTH_MESH_FORMAT_TAKE :
-      self->settings.format == CLOTH_MESH_FORMAT_TAKE;
-  g_autoptr (ClothTake) take = is_take ? cloth_take_open (location, NULL) :
-      NULL;
+  g_autoptr (ClothTake) take = get_format (self) == CLOTH_MESH_FORMAT_TAKE ?
+      cloth_take_open (location, NULL) : NULL;
   const ClothTakeInfo *info = take ? cloth_take_get_info (take) : NULL;
 
   if (info && info->held->len + info->obstacles->len + info->seams->len > 0)
@@ -206,6 +210,20 @@ warn_of_scene (GstMeshSink * self)
         ("The take in “%s” has clamps, obstacles or seams; the recording that "
             "replaces it has none.", location),
         ("Copy it before the recording ends, or record to another location."));
+}
+
+/* What is read again without times moves at another speed. */
+static void
+warn_of_times (GstMeshSink * self)
+{
+  const ClothMeshFormat format = get_format (self);
+
+  if (self->fps_n <= 0 && (format == CLOTH_MESH_FORMAT_OBJ_PC2
+          || format == CLOTH_MESH_FORMAT_PLY))
+    GST_ELEMENT_WARNING (self, RESOURCE, FAILED,
+        ("“%s” counts frames, and those that come have no frame rate: when "
+            "they came is not written.", self->settings.location),
+        ("Takes, VTP, CSV, glTF and USD keep times."));
 }
 
 static gboolean
@@ -273,6 +291,8 @@ gst_mesh_sink_render (GstBaseSink * sink, GstBuffer * buffer)
   frame.positions = gst_cloth_mesh_get_positions (mesh, NULL);
   frame.states = gst_cloth_mesh_get_states (mesh, NULL);
   frame.covariances = gst_cloth_mesh_get_covariances (mesh, NULL);
+  if (cloth_mesh_writer_get_n_frames (self->writer) == 1)
+    warn_of_times (self);
   if (!cloth_mesh_writer_append (self->writer, time_s, &frame, &error)) {
     fail (self, "write", error);
     return GST_FLOW_ERROR;

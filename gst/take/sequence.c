@@ -310,6 +310,8 @@ open_take (ClothMeshReader * reader, const gchar * folder, GError ** error)
   reader->topology = (ClothTopology *) cloth_take_get_topology (reader->take);
   reader->n_frames = cloth_take_get_n_frames (reader->take);
   reader->fps = cloth_take_get_info (reader->take)->fps;
+  if (!(reader->fps > 0))
+    reader->fps = cloth_take_get_rate (reader->take);
   n = reader->topology->n_vertices;
   if (cloth_take_has_covariances (reader->take))
     reader->covariances = g_new (gfloat, 6 * n);

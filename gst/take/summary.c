@@ -8,8 +8,6 @@
 
 #include "gst/math/statistics.h"
 
-/* Frame intervals that differ by less count as even. */
-#define EVEN 0.01
 /* Beyond these, in the median over the frames, a note says so: cloth doesn't shrink, and folds make
  * chords of edges by less. */
 #define ODD_STRETCH 1.05
@@ -235,7 +233,8 @@ add_rate (GString * table, const ClothTake * take)
   const gdouble first = cloth_take_get_time (take, 0);
   const gdouble last = cloth_take_get_time (take, n - 1);
   g_autofree gdouble *steps = g_new (gdouble, n);
-  gdouble least = INFINITY, most = 0, median;
+  const gdouble rate = cloth_take_get_rate (take);
+  gdouble least = INFINITY, most = 0;
 
   cloth_summary_add (table, "frames", "%u", n);
   if (n < 2) {
@@ -248,14 +247,12 @@ add_rate (GString * table, const ClothTake * take)
     least = MIN (least, steps[i]);
     most = MAX (most, steps[i]);
   }
-  median = cloth_median (steps, n - 1);
-  if (most - least < EVEN * median)
-    cloth_summary_add (table, "rate", "%.4g a second, even",
-        (n - 1) / (last - first));
+  if (rate > 0)
+    cloth_summary_add (table, "rate", "%.4g a second, even", rate);
   else
     cloth_summary_add (table, "rate",
         "%.4g a second in the median; frames are %.3g to %.3g s apart",
-        1 / median, least, most);
+        1 / cloth_median (steps, n - 1), least, most);
   cloth_summary_add (table, "duration", "%.6g s, from %.6g to %.6g s",
       last - first, first, last);
 }

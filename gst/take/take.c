@@ -15,6 +15,8 @@
 
 #define JSON "take.json"
 #define OBSERVATIONS "observations"
+/* Times between frames that differ by less than this share count as even. */
+#define EVEN 0.01
 #define MAX_FRAMES (CLOTH_MAX_BUFFER / sizeof (gdouble))
 
 struct _ClothTake
@@ -445,6 +447,30 @@ gdouble
 cloth_take_get_time (const ClothTake * take, guint frame)
 {
   return take->times ? take->times[frame] : frame / take->info->fps;
+}
+
+/* @take: a take
+ *
+ * Returns: frames a second by its times, a whole number where these were rounded; 0 where
+ *   they are not even
+ */
+gdouble
+cloth_take_get_rate (const ClothTake * take)
+{
+  const guint last = take->n_frames - 1;
+  gdouble least = INFINITY, most = 0., step, rate;
+
+  if (!take->times)
+    return take->info->fps;
+  for (guint i = 0; i < last; i++) {
+    least = fmin (least, take->times[i + 1] - take->times[i]);
+    most = fmax (most, take->times[i + 1] - take->times[i]);
+  }
+  step = last > 0 ? (take->times[last] - take->times[0]) / last : 0.;
+  if (!(most - least < EVEN * step))
+    return 0.;
+  rate = rint (1. / step);
+  return fabs (last / rate - last * step) < EVEN * step ? rate : 1. / step;
 }
 
 /* @take: a take

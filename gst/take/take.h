@@ -20,6 +20,7 @@ guint cloth_take_get_n_frames (const ClothTake * take);
 guint cloth_take_get_n_positions (const ClothTake * take);
 const gdouble *cloth_take_get_times (const ClothTake * take);
 gdouble cloth_take_get_time (const ClothTake * take, guint frame);
+gdouble cloth_take_get_rate (const ClothTake * take);
 gboolean cloth_take_has_covariances (const ClothTake * take);
 gboolean cloth_take_has_clamps (const ClothTake * take);
 gboolean cloth_take_read_positions (ClothTake * take, guint frame,

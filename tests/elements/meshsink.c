@@ -515,6 +515,39 @@ GST_START_TEST (test_scene_lost)
 GST_END_TEST;
 
 /* Nothing is told of another location, nor of a program that lives. */
+/* Files that count frames keep nothing of when these came; that is said once, of a still not at all. */
+GST_START_TEST (test_times_lost)
+{
+  static const struct
+  {
+    const gchar *location;
+    gint fps;
+    guint n;
+    gboolean warns;
+  } cases[] = {
+    {"c.obj", 0, 3, TRUE}, {"c.ply", 0, 3, TRUE}, {"c.obj", 0, 1, FALSE},
+    {"c.obj", 25, 3, FALSE}, {"c.take", 0, 3, FALSE}, {"c.csv", 0, 3, FALSE},
+    {"c.glb", 0, 3, FALSE}, {"c.usda", 0, 3, FALSE}, {"c.pvd", 0, 3, FALSE},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    Sink sink;
+
+    scratch_begin ();
+    sink = open_sink (cases[i].location, "auto");
+    gst_harness_set_src_caps (sink.harness, make_caps (COLUMNS, cases[i].fps));
+    push_frames (&sink, 0, cases[i].n);
+    gst_harness_push_event (sink.harness, gst_event_new_eos ());
+    if (cases[i].warns)
+      expect_warning (&sink, "have no frame rate");
+    expect_warning (&sink, NULL);
+    close_sink (&sink);
+    scratch_end ();
+  }
+}
+
+GST_END_TEST;
+
 GST_START_TEST (test_no_remains)
 {
   g_autofree gchar *left = NULL;
@@ -668,6 +701,7 @@ meshsink_suite (void)
   tcase_add_test (tests, test_device);
   tcase_add_test (tests, test_remains);
   tcase_add_test (tests, test_scene_lost);
+  tcase_add_test (tests, test_times_lost);
   tcase_add_test (tests, test_no_remains);
   tcase_add_test (tests, test_no_location);
   tcase_add_test (tests, test_wrong_endings);

@@ -307,6 +307,51 @@ GST_START_TEST (test_rates)
 
 GST_END_TEST;
 
+/* Of a take that has times only, as import writes them, even ones are a frame rate: files that
+ * count frames would be played at another one. */
+GST_START_TEST (test_even_times)
+{
+  static const struct
+  {
+    const gchar *times;
+    gint n, d;
+  } cases[] = {
+    {"np.arange(32)/50", 50, 1},
+    {"7+np.arange(32)/12.5", 25, 2},
+    /* as a table has them */
+    {"np.round(np.arange(32)/30,6)", 30, 1},
+    {"np.arange(32)/50+.004*(np.arange(32)%2)", 0, 1},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *script = g_strdup_printf ("import json\nos.mkdir('t')\n"
+        "j=json.load(open('" TAKE "/take.json'))\n"
+        "del j['fps']; j['held']=[]\n"
+        "json.dump(j,open('t/take.json','w'))\n"
+        "np.save('t/positions.npy',np.load('" TAKE "/positions.npy')[:32])\n"
+        "np.save('t/times.npy',%s)\n", cases[i].times);
+    g_autoptr (GstPad) pad = NULL;
+    g_autoptr (GstCaps) caps = NULL;
+    Player player;
+    gint n, d;
+
+    scratch_begin ();
+    peer_run (script);
+    player_init (&player, "t", "");
+    preroll (&player);
+    pad = gst_element_get_static_pad (player.src, "src");
+    caps = gst_pad_get_current_caps (pad);
+    fail_unless (gst_structure_get_fraction (gst_caps_get_structure (caps, 0),
+            "framerate", &n, &d));
+    fail_unless_equals_int (n, cases[i].n);
+    fail_unless_equals_int (d, cases[i].d);
+    player_clear (&player);
+    scratch_end ();
+  }
+}
+
+GST_END_TEST;
+
 /* times.npy decides when it is there; the last frame lasts as the one before. */
 GST_START_TEST (test_times)
 {
@@ -454,6 +499,7 @@ meshsrc_suite (void)
   tcase_add_test (tests, test_seek_from_end);
   tcase_add_test (tests, test_loops);
   tcase_add_test (tests, test_rates);
+  tcase_add_test (tests, test_even_times);
   tcase_add_test (tests, test_times);
   tcase_add_test (tests, test_files_without_rate);
   tcase_add_test (tests, test_restarts);
