@@ -387,7 +387,8 @@ cloth_body_new (const ClothScene * scene, GError ** error)
   for (guint i = 0; i < n; i++) {
     if (!(body->area[body->particle[i]] > 0.)) {
       g_set_error (error, CLOTH_SIM_ERROR, CLOTH_SIM_ERROR_SCENE,
-          "vertex %u belongs to no face, so it has no mass", i);
+          "vertex %u belongs to no face, so it has no mass; leave it out of the "
+          "mesh", i);
       return NULL;
     }
   }

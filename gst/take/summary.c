@@ -25,6 +25,7 @@ static const ClothSides SIDES[2] = { CLOTH_SIDES_U, CLOTH_SIDES_V };
  * @lengths: of each clamp's path
  * @open: frames in which nobody logged its place
  * @distances: (element-type GArray): of each clamp, how far from its vertex it was
+ * @beside: of each vertex another one that was in its place in all frames, else CLOTH_NO_VERTEX
  * @below: by how much the vertices that were seen are below what holds them, added up
  */
 typedef struct
@@ -37,6 +38,7 @@ typedef struct
   gdouble *lengths;
   guint *open;
   GPtrArray *distances;
+  guint32 *beside;
   gdouble below[3];
 } Pass;
 
@@ -180,6 +182,51 @@ look_below (Pass * pass, const ClothTakeInfo * info, gdouble time,
       pass->below[k] += middle[k] - positions[3 * i + k];
 }
 
+static gint
+compare_places (gconstpointer a, gconstpointer b, gpointer positions)
+{
+  const gfloat *p = (const gfloat *) positions + 3 * (gsize) * (guint32 *) a;
+  const gfloat *q = (const gfloat *) positions + 3 * (gsize) * (guint32 *) b;
+
+  for (guint k = 0; k < 3; k++)
+    if (p[k] != q[k])
+      return p[k] < q[k] ? -1 : 1;
+  return 0;
+}
+
+static gboolean
+is_same_place (const gfloat * positions, guint32 a, guint32 b)
+{
+  return compare_places (&a, &b, (gpointer) positions) == 0;
+}
+
+/* Vertices that are one, though the mesh has them apart. */
+static void
+look_beside (Pass * pass, guint frame, gfloat * positions, guint32 n)
+{
+  g_autofree guint32 *order = g_new (guint32, n);
+  guint32 n_seen = 0;
+
+  for (guint32 v = 0; v < n; v++) {
+    const gfloat *at = positions + 3 * (gsize) v;
+
+    /* many programs write zeros for what they don't see */
+    if (frame == 0 && !isnan (at[0]) && (at[0] != 0 || at[1] != 0
+            || at[2] != 0))
+      order[n_seen++] = v;
+    else if (frame > 0 && pass->beside[v] != CLOTH_NO_VERTEX
+        && !is_same_place (positions, v, pass->beside[v]))
+      pass->beside[v] = CLOTH_NO_VERTEX;
+  }
+  g_qsort_with_data (order, (gint) n_seen, sizeof *order, compare_places,
+      positions);
+  for (guint32 i = 1; i < n_seen; i++)
+    if (is_same_place (positions, order[i], order[i - 1])) {
+      pass->beside[order[i]] = order[i - 1];
+      pass->beside[order[i - 1]] = order[i];
+    }
+}
+
 static void
 mark_unseen (gfloat * positions, gsize n_vertices)
 {
@@ -204,6 +251,8 @@ look (ClothTake * take, Pass * pass, GError ** error)
         !cloth_take_read_states (take, i, positions, states, error))
       return FALSE;
     look_at_vertices (pass, i, positions, states, (guint) n);
+    if (i < cloth_take_get_n_positions (take))
+      look_beside (pass, i, positions, (guint32) n);
     for (guint k = 0; k < 2; k++) {
       gdouble stretch = cloth_summary_stretch (topology, positions,
           SIDES[k], scratch);
@@ -311,6 +360,48 @@ add_seen (GString * table, const ClothTake * take, const Pass * pass)
         "not known: no neighbours were seen together");
 }
 
+/* A mesh of a file: vertices without a face, and those that are nothing but a copy of another. */
+static void
+add_mesh_notes (GString * table, const ClothTake * take, const Pass * pass)
+{
+  const ClothTopology *topology = cloth_take_get_topology (take);
+  const GArray *seams = cloth_take_get_info (take)->seams;
+  g_autofree gboolean *has_face = g_new0 (gboolean, topology->n_vertices);
+  g_autofree gboolean *sewn = g_new0 (gboolean, topology->n_vertices);
+  guint n_loose = 0, n_open = 0, loose = 0, open = 0;
+
+  for (gsize i = 0; i < 4 * (gsize) topology->n_faces; i++)
+    if (topology->faces[i] != CLOTH_NO_VERTEX)
+      has_face[topology->faces[i]] = TRUE;
+  for (guint s = 0; s < seams->len; s++) {
+    const ClothSeamLine *line = &g_array_index (seams, ClothSeamLine, s);
+
+    for (guint i = 0; i < line->n_vertices; i++)
+      sewn[line->lines[0][i]] = sewn[line->lines[1][i]] = TRUE;
+  }
+  for (guint v = topology->n_vertices; v-- > 0;) {
+    const guint other = pass->beside[v];
+
+    if (!has_face[v]) {
+      n_loose++;
+      loose = v;
+    } else if (other != CLOTH_NO_VERTEX && has_face[other] && !sewn[v]
+        && !sewn[other]) {
+      n_open++;
+      open = v;
+    }
+  }
+  if (n_loose > 0)
+    cloth_summary_add (table, "note",
+        "%u vertices belong to no face, the first "
+        "is %u: no simulation takes the mesh; leave them out", n_loose, loose);
+  if (n_open > 0)
+    cloth_summary_add (table, "note", "%u vertices lie where others do, and "
+        "nothing sews them, the first are %u and %u: a simulation comes apart "
+        "there; merge them where the mesh was made, or write “seams” into "
+        "take.json", n_open, open, pass->beside[open]);
+}
+
 /* What is wrong, more likely than not. */
 static void
 add_notes (GString * table, const ClothTake * take, const Pass * pass)
@@ -334,6 +425,8 @@ add_notes (GString * table, const ClothTake * take, const Pass * pass)
               fabs (pass->below[2]))) / 2)
     cloth_summary_add (table, "note", "the cloth does not hang below its "
         "clamps: see that z is up (--axes of an import)");
+  if (!grid)
+    add_mesh_notes (table, take, pass);
 }
 
 static void
@@ -391,14 +484,18 @@ cloth_take_summarise (ClothTake * take, GError ** error)
   g_autofree gfloat *clamps = g_new0 (gfloat, 6 * n_held);
   g_autofree gdouble *lengths = g_new0 (gdouble, n_held);
   g_autofree guint *open = g_new0 (guint, n_held);
+  const guint n = cloth_take_get_topology (take)->n_vertices;
+  g_autofree guint32 *beside = g_new (guint32, n);
   Pass pass = {
     .lowest = {INFINITY, INFINITY, INFINITY},
     .highest = {-INFINITY, -INFINITY, -INFINITY},
     .stretches = {along_u, along_v},.distances = distances,.lengths =
         lengths,.open = open,
-    .clamps = clamps,.before = clamps + 3 * n_held
+    .clamps = clamps,.before = clamps + 3 * n_held,.beside = beside
   };
 
+  for (guint v = 0; v < n; v++)
+    beside[v] = CLOTH_NO_VERTEX;
   for (gsize i = 0; i < n_held; i++)
     g_ptr_array_add (distances, g_array_new (FALSE, FALSE, sizeof (gdouble)));
   if (!look (take, &pass, error))

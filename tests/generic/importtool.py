@@ -474,6 +474,34 @@ def informed():
     expect('note        the cloth does not hang below its clamps' in told, 'upside down: ' + told)
 
 
+def unmerged():
+    """Meshes as many programs write them: vertices twice at a seam, and some without a face."""
+    def note(name, faces, extra='', move=0):
+        rows = ['v %g 0 %g' % (0.1 * (i % 3), 1 - 0.1 * (i // 3)) for i in range(9)] + extra.split('\n')
+        for frame in range(2):
+            if frame:
+                rows[9:] = [row.replace('v 0.1 0 1', 'v 0.1 %g 1' % move) for row in rows[9:]]
+            text = ['vt %g %g' % (0.1 * (i % 3), 0.1 * (i // 3)) for i in range(9)]
+            text += ['f ' + ' '.join('%d/%d' % corner for corner in face) for face in faces]
+            write('%s-%d.obj' % (name, frame), '\n'.join(rows + text) + '\n')
+        done = run('import', name + '-0.obj', '--rate', '30', '--output', name + '.take', '--clamp', '0')
+        expect(done.returncode == 0, '%s is imported: %s' % (name, done.stderr))
+        again = run('info', name + '.take').stdout
+        expect(done.stdout.count('note') == again.count('note'), name + ': info says the same')
+        return '\n'.join(line for line in done.stdout.splitlines() if line.startswith('note'))
+    square = [(0, 3, 4, 1), (1, 4, 5, 2), (3, 6, 7, 4), (4, 7, 8, 5)]
+    whole = [[(v + 1, v + 1) for v in face] for face in square]
+    expect(note('whole', whole) == '', 'of a whole mesh nothing is noted')
+    expect('1 vertices belong to no face, the first is 9: ' in note('loose', whole, 'v 5 5 5'),
+           'a vertex without a face')
+    # the upper middle vertex, once for the face at its left
+    parted = [[(10, uv) if v == 2 else (v, uv) for v, uv in whole[0]]] + whole[1:]
+    told = note('parted', parted, 'v 0.1 0 1')
+    expect('2 vertices lie where others do, and nothing sews them, the first are 1 and 9' in told and
+           'seams' in told, 'a vertex that is there twice: ' + told)
+    expect(note('touching', parted, 'v 0.1 0 1', move=0.01) == '', 'what parts later was no copy')
+
+
 def c3d_bytes(integer, labels=True, rate=50., frames=60):
     """A C3D file, written from the format's description."""
     def parameter(name, group, kind, dimensions, payload):
@@ -566,6 +594,7 @@ with tempfile.TemporaryDirectory(prefix='cloth-import-') as scratch:
     meshes()
     seams()
     informed()
+    unmerged()
     c3d()
     shown()
     os.chdir('/')
