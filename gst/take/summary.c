@@ -360,6 +360,31 @@ add_seen (GString * table, const ClothTake * take, const Pass * pass)
         "not known: no neighbours were seen together");
 }
 
+/* The noise of a coordinate that makes neighbours look @stretch times as far apart as they are, m:
+ * each of the two ends adds σ² in three directions to the square of their distance. */
+static gdouble
+find_noise (const ClothTopology * topology, ClothSides sides, gdouble stretch)
+{
+  g_autoptr (GArray) edges = g_array_new (FALSE, FALSE, sizeof (gdouble));
+
+  for (gsize i = 0; i < topology->n_faces; i++) {
+    const guint32 *face = topology->faces + 4 * i;
+    const guint n = cloth_face_corners (face);
+
+    for (guint k = 0; k < n; k++) {
+      const gfloat *u = topology->uv + 2 * (gsize) face[k];
+      const gfloat *v = topology->uv + 2 * (gsize) face[(k + 1) % n];
+      const gdouble du = fabs ((gdouble) u[0] - v[0]);
+      const gdouble dv = fabs ((gdouble) u[1] - v[1]), edge = hypot (du, dv);
+
+      if ((sides == CLOTH_SIDES_U) == (du > dv))
+        g_array_append_val (edges, edge);
+    }
+  }
+  return cloth_median ((gdouble *) (gpointer) edges->data, edges->len) *
+      sqrt ((stretch * stretch - 1.) / 6.);
+}
+
 /* A mesh of a file: vertices without a face, and those that are nothing but a copy of another. */
 static void
 add_mesh_notes (GString * table, const ClothTake * take, const Pass * pass)
@@ -413,13 +438,19 @@ add_notes (GString * table, const ClothTake * take, const Pass * pass)
     const gdouble stretch = cloth_median ((gdouble *) (gpointer)
         stretches->data, stretches->len);
 
+    g_autofree gchar *noise = stretch > 1 ?
+        g_strdup_printf ("; noise of about %.2g mm would do the same",
+        1000 * find_noise (cloth_take_get_topology (take), SIDES[k],
+            stretch)) : g_strdup ("");
+
     /* NaN is neither */
     if (stretch > ODD_STRETCH || stretch < ODD_SHRINKAGE)
       cloth_summary_add (table, "note", "along %s neighbours are %.2f times "
           "as far apart as on the flat cloth: see that %s, the unit of the "
           "places (of filmed cloth that of the rig) and the order of the vertices "
-          "are right", cloth_summary_name_sides (SIDES[k], grid), stretch,
-          !grid ? "the uv of the mesh" : k == 0 ? "its width" : "its height");
+          "are right%s", cloth_summary_name_sides (SIDES[k], grid), stretch,
+          !grid ? "the uv of the mesh" : k == 0 ? "its width" : "its height",
+          noise);
   }
   if (pass->below[2] < MAX (fabs (pass->below[0]), MAX (fabs (pass->below[1]),
               fabs (pass->below[2]))) / 2)

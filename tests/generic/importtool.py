@@ -465,6 +465,10 @@ def informed():
         told = info(width)
         expect('note        along rows neighbours are %s times' % ratio in told and 'note        along columns'
                not in told and told.count('note') == 1, 'a print of %g m: %s' % (width, told))
+    noisy = numpy.random.default_rng(1).normal(positions, 0.01)
+    told = info(places=noisy)
+    said = [float(x) for x in re.findall(r'noise of about ([.0-9]+) mm would do the same', told)]
+    expect(len(said) == 2 and all(8 < x < 12 for x in said), 'noise of 10 mm: ' + told)
     odd = positions.copy()
     odd[:, (numpy.arange(81) // 9 + numpy.arange(81) % 9) % 2 == 1] = numpy.nan
     told = info(places=odd)
