@@ -10,6 +10,7 @@
 #include "tools/pattern-picture.h"
 #include "tools/tool.h"
 
+#include <errno.h>
 #include <glib/gstdio.h>
 #include <gst/gst.h>
 #include <math.h>
@@ -350,7 +351,8 @@ run_garment (const Arguments * arguments)
     return complain (FAILED, "%s: %s", arguments->kinds[1], error->message);
   }
   if (g_mkdir_with_parents (arguments->output, 0777) != 0) {
-    return complain (FAILED, "%s: can't make the folder", arguments->output);
+    return complain (FAILED, "%s: can't make the folder: %s", arguments->output,
+        g_strerror (errno));
   }
   if (!cloth_garment_save (garment, arguments->output, &error))
     return complain (FAILED, "%s", error->message);

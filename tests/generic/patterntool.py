@@ -312,6 +312,7 @@ def garments(folder):
             (['garment', 'no.svg', '--pattern', 'pattern.json', '--output', 'x'], 1, 'no.svg'),
             (['garment', drawing, '--pattern', 'no.json', '--output', 'x'], 1, 'no.json'),
             (['garment', 'pattern.json', '--pattern', 'pattern.json', '--output', 'x'], 1, 'pattern.json'),
+            (['garment', drawing, '--pattern', 'pattern.json', '--output', 'pattern.json'], 1, 'Not a directory'),
             (['garment', drawing, '--pattern', 'pattern.json', '--output', 'x', '--rows', '9'], 2,
              '--rows is not for'),
             (['garment', drawing, '--pattern', 'pattern.json', '--output', 'x', '--paper', 'A4'], 2,
