@@ -223,6 +223,8 @@ def refused():
         at=numpy.where(times == times[30], 0.1, times))), says=['line 2432', 'goes back', '--rate'])
     bad('a time twice', write('b.csv', wide_table(at=numpy.round(times, 1))),
         says=['comes twice', '--rate'])
+    bad('markers in a column that nobody knows', write('b.csv', long_table(header='time,keypoint,x,y,z')),
+        says=['comes twice', '“marker”'])
     bad('milliseconds as seconds', write('b.csv', wide_table(at=20000 * times)), says=['time_ms'])
     bad('no time', write('b.csv', '\n'.join(r.split(',', 1)[1] for r in wide_table().split('\n')[:-1])),
         says=['--rate'])

@@ -578,8 +578,15 @@ read_wide_row (Parser * parser, guint n_markers, gdouble before[2],
 
     if (roles[i] < 0)
       continue;
-    if (!parse_cell (parser, (guint) roles[i], &value, error) ||
-        !check_rising (parser, i == 0 ? "frame" : "time", before[i], value,
+    if (!parse_cell (parser, (guint) roles[i], &value, error))
+      return FALSE;
+    if (n_markers == 1 && value == before[i])
+      return cloth_file_invalid (error,
+          "line %u: the %s %.10g comes twice, and "
+          "each line has one place: call the column that tells the markers "
+          "apart “marker”, or leave one of the lines out",
+          parser->table.line, i == 0 ? "frame" : "time", value);
+    if (!check_rising (parser, i == 0 ? "frame" : "time", before[i], value,
             error))
       return FALSE;
     g_array_append_val (values[i], value);
