@@ -36,7 +36,10 @@ typedef struct
   gboolean hole;                /* vertices 3 and 4 are NaN in frames 10 and 11 */
   gdouble scale;                /* of all lengths but uv */
   gdouble noise;
+  gboolean twice;               /* two sheets with the same uv, BEHIND m apart */
 } Sheet;
+
+#define BEHIND 0.1
 
 static gchar *parent;
 
@@ -110,6 +113,24 @@ new_mesh (guint columns, guint rows, gdouble width, gdouble shifted)
   return mesh;
 }
 
+/* Two panels whose uv are one upon the other, as programs for textures lay them. */
+static ClothTopology *
+new_panels (guint columns, guint rows)
+{
+  g_autoptr (ClothTopology) one = new_mesh (columns, rows, WIDTH, 0.);
+  const guint n = one->n_vertices;
+  ClothTopology *both = cloth_topology_new (2 * n, 2 * one->n_faces);
+
+  for (guint k = 0; k < 2; k++) {
+    memcpy (both->uv + k * 2 * n, one->uv, 2 * n * sizeof *one->uv);
+    for (gsize i = 0; i < 4 * (gsize) one->n_faces; i++)
+      both->faces[k * 4 * one->n_faces + i] =
+          one->faces[i] == CLOTH_NO_VERTEX ? one->faces[i] :
+          one->faces[i] + k * n;
+  }
+  return both;
+}
+
 static void
 place_at (const Sheet * s, Motion motion, gdouble u, gdouble v, gdouble t,
     gfloat * to)
@@ -131,9 +152,10 @@ write_take (const Sheet * s, Motion motion)
   const guint rows = s->rows ? s->rows : 5;
   const gdouble fps = s->fps > 0. ? s->fps : FPS, width = WIDTH + s->wider;
   const gdouble end_s = s->end_s > 0. ? s->end_s : (N_FRAMES - 1) / FPS;
-  const guint n = columns * rows;
+  const guint n = columns * rows * (s->twice ? 2 : 1);
   g_autoptr (ClothTakeInfo) info = cloth_take_info_new (s->name);
-  g_autoptr (ClothTopology) topology = s->mesh ?
+  g_autoptr (ClothTopology) topology =
+      s->twice ? new_panels (columns, rows) : s->mesh ?
       new_mesh (columns, rows, width, s->shifted) :
       cloth_topology_new_grid (columns, rows, (gfloat) width, (gfloat) HEIGHT);
   g_autofree gchar *folder = g_build_filename (parent, s->name, NULL);
@@ -159,7 +181,7 @@ write_take (const Sheet * s, Motion motion)
 
     g_array_append_val (info->obstacles, ball);
   }
-  if (s->mesh) {
+  if (s->mesh || s->twice) {
     info->mesh = g_strdup ("cloth.obj");
   } else {
     info->columns = columns;
@@ -179,9 +201,13 @@ write_take (const Sheet * s, Motion motion)
     for (guint v = 0; v < n; v++)
       place_at (s, motion, topology->uv[2 * v] - (s->mesh ? s->shifted : 0.),
           topology->uv[2 * v + 1], t, positions + 3 * v);
+    for (guint v = n / 2; v < n && s->twice; v++)
+      positions[3 * v + 1] += (gfloat) BEHIND;
     for (guint i = 0; i < n_held; i++)
       place_at (s, motion, topology->uv[2 * vertices[i]],
           topology->uv[2 * vertices[i] + 1], t, clamps + 3 * i);
+    if (s->third && s->twice)
+      clamps[7] += (gfloat) BEHIND;
     for (guint i = 0; i < 3 * n && s->torn && t > 0.59; i++)
       positions[i] *= i % 2 ? 1e4f : -1e4f;
     memset (states, CLOTH_VERTEX_MEASURED, n);
@@ -479,6 +505,33 @@ test_simulated (void)
   }
 }
 
+/* Panels that lie upon each other on the flat cloth are told apart by the numbers of their vertices, and by nothing
+ * on another mesh. */
+static void
+test_panels (void)
+{
+  static const Sheet both = {.name = "both",.noise = SIGMA,.twice = TRUE,
+    .third = TRUE
+  };
+  static const Sheet finer = {.name = "finer",.columns = 12,.twice = TRUE,
+    .third = TRUE
+  };
+  g_autoptr (ClothRecording) r = record (&both, move_bent);
+  g_autoptr (ClothTake) same = write_take (&both, move_bent);
+  g_autoptr (ClothTake) other = write_take (&finer, move_bent);
+  g_autoptr (GError) error = NULL;
+  g_autoptr (ClothRecording) twin = cloth_recording_new_twin (same, r, &error);
+
+  g_assert_no_error (error);
+  g_assert_cmpuint (twin->n, ==, 70);
+  for (gsize i = 0; i < 3 * (gsize) twin->n * twin->n_frames; i++)
+    g_assert_cmpfloat_with_epsilon (twin->y[i], r->y[i], 1e-6);
+  g_assert_null (cloth_recording_new_twin (other, r, &error));
+  g_assert_error (error, CLOTH_FIT_ERROR, CLOTH_FIT_ERROR_RECORDING);
+  g_assert_nonnull (strstr (error->message,
+          "lay its panels beside each other"));
+}
+
 /* A place that outlines alone tell of is told of no less because several simulations are held against it. */
 static void
 test_alike (void)
@@ -512,6 +565,7 @@ main (int argc, char **argv)
   g_test_add_func ("/twin/bent", test_bent);
   g_test_add_func ("/twin/masked", test_masked);
   g_test_add_func ("/twin/simulated", test_simulated);
+  g_test_add_func ("/twin/panels", test_panels);
   g_test_add_func ("/twin/alike", test_alike);
   g_test_add_func ("/twin/accepted", test_accepted);
   g_test_add_func ("/twin/seldom", test_seldom);

@@ -80,6 +80,7 @@ typedef struct
   gdouble noise;                /* that its positions are said to have, m */
   ClothScene *scene;            /* of the simulation */
   gboolean begins_torn;
+  gboolean same_vertices;       /* as recorded */
   ClothFlatPlace *places;       /* of the recorded vertices */
   Moment *moments;              /* of the recorded frames */
   gfloat *samples;              /* of its own frames, [n_frames][recorded->n][3], m */
@@ -164,6 +165,72 @@ check_world (const Twin * t, GError ** error)
   return TRUE;
 }
 
+static ClothFlatPlace
+place_of_vertex (guint vertex)
+{
+  ClothFlatPlace place = { {0} };
+
+  place.corners[0] = vertex;
+  place.weights[0] = 1.;
+  return place;
+}
+
+/* A mesh of the recorded vertices, whatever its faces. */
+static gboolean
+has_same_vertices (const Twin * t)
+{
+  const ClothTopology *cloth = t->recorded->scene->topology;
+  const ClothTopology *own = t->scene->topology;
+
+  if (own->n_vertices != cloth->n_vertices)
+    return FALSE;
+  for (gsize i = 0; i < 2 * (gsize) cloth->n_vertices; i++)
+    if (!(fabs ((gdouble) own->uv[i] - cloth->uv[i]) <= ROUNDING * t->side))
+      return FALSE;
+  return TRUE;
+}
+
+/* Sewn together, or nothing but two copies of one. */
+static gboolean
+are_one (const Twin * t, guint32 a, guint32 b)
+{
+  const ClothRecording *r = t->recorded;
+  const GArray *seams = r->scene->seams;
+
+  for (guint i = 0; i < seams->len; i++) {
+    const ClothSeam *seam = &g_array_index (seams, ClothSeam, i);
+
+    if ((seam->a == a && seam->b == b) || (seam->a == b && seam->b == a))
+      return TRUE;
+  }
+  return are_near (r->y + 3 * (gsize) a, r->y + 3 * (gsize) b, 3,
+      ROUNDING * t->side);
+}
+
+/* No place of the flat cloth is that of two vertices, unless these are one: uv would not tell them apart. */
+static gboolean
+check_overlap (const Twin * t, GError ** error)
+{
+  const ClothTopology *cloth = t->recorded->scene->topology;
+  g_autoptr (ClothFlatMap) map = cloth_flat_map_new (cloth, 0.);
+
+  for (guint32 v = 0; v < cloth->n_vertices; v++) {
+    const gfloat *uv = cloth->uv + 2 * (gsize) v;
+    const ClothFlatPlace place = cloth_flat_map_locate (map, uv);
+    gboolean same = FALSE;
+
+    for (guint c = 0; c < 4 && !same; c++)
+      same = place.weights[c] > 0. && (place.corners[c] == v
+          || are_one (t, place.corners[c], v));
+    if (!same && place.outside <= 0.)
+      return refuse (t, error, "its mesh is another one, and the recording's "
+          "vertex %u lies where there is other cloth too, at (%g, %g) m on the "
+          "flat cloth; simulate the recording's mesh, or lay its panels beside "
+          "each other in its uv", v, uv[0], uv[1]);
+  }
+  return TRUE;
+}
+
 /* Both are of one flat cloth, and every recorded vertex has a place on the other mesh. */
 static gboolean
 check_cloth (Twin * t, GError ** error)
@@ -181,8 +248,15 @@ check_cloth (Twin * t, GError ** error)
           "recording %g×%g m; simulate the recorded cloth, its size in metres",
           own_high[0] - own_low[0], own_high[1] - own_low[1],
           high[0] - low[0], high[1] - low[1]);
-  map = cloth_flat_map_new (t->scene->topology, slack);
   t->places = g_new (ClothFlatPlace, cloth->n_vertices);
+  t->same_vertices = has_same_vertices (t);
+  for (guint v = 0; v < cloth->n_vertices && t->same_vertices; v++)
+    t->places[v] = place_of_vertex (v);
+  if (t->same_vertices)
+    return TRUE;
+  if (!check_overlap (t, error))
+    return FALSE;
+  map = cloth_flat_map_new (t->scene->topology, slack);
   for (guint v = 0; v < cloth->n_vertices; v++) {
     const gfloat *uv = cloth->uv + 2 * (gsize) v;
 
@@ -463,7 +537,8 @@ check_held (const Twin * t, const ClothScene * a, const ClothScene * b,
   for (guint i = 0; i < a->held->len; i++) {
     guint vertex = g_array_index (a->held, ClothHeld, i).vertex;
     const gfloat *uv = a->topology->uv + 2 * (gsize) vertex;
-    ClothFlatPlace place = cloth_flat_map_locate (map, uv);
+    ClothFlatPlace place = t->same_vertices ? place_of_vertex (vertex) :
+        cloth_flat_map_locate (map, uv);
     gdouble apart;
 
     if (find_clamp (b, &place, uv, &g_array_index (a->held, ClothHeld, i),
