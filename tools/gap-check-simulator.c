@@ -40,10 +40,13 @@ check_parameter (ClothGapSimulator * simulator, ClothTake * scene, guint i,
   g_autofree gdouble *values =
       cloth_gap_simulator_defaults (simulator->capabilities);
   g_autoptr (ClothTake) moved = NULL;
+  g_autofree gchar *is = p->is ? g_strjoinv (", ", p->is) : NULL;
+  const gboolean has_unit = !g_str_equal (p->unit, "1");
   gdouble by;
 
   if (cloth_simulator_parameter_is_fixed (p)) {
-    g_print ("%-24s %g %s, fixed\n", p->name, p->value, p->unit);
+    g_print ("%-24s %g%s%s, fixed\n", p->name, p->value, has_unit ? " " : "",
+        has_unit ? p->unit : "");
     return TRUE;
   }
   values[i] = cloth_gap_simulator_move (p, p->value);
@@ -58,9 +61,9 @@ check_parameter (ClothGapSimulator * simulator, ClothTake * scene, guint i,
           "scene", p->name);
     return FALSE;
   }
-  g_print ("%-24s %g to %g %s moves the cloth by %.3g mm%s%s\n", p->name,
-      p->value, values[i], p->unit, 1e3 * by, p->is ? ", is " : "",
-      p->is ? p->is[0] : "");
+  g_print ("%-24s %g to %g%s%s moves the cloth by %.3g mm%s%s\n", p->name,
+      p->value, values[i], has_unit ? " " : "", has_unit ? p->unit : "",
+      1e3 * by, is ? ", is " : "", is ? is : "");
   if (by > repeat)
     return TRUE;
   g_set_error (error, CLOTH_SIMULATOR_ERROR, CLOTH_SIMULATOR_ERROR_RESULT,

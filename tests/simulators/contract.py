@@ -103,6 +103,11 @@ def keep(folder):
     expect(asked == {'shift': 0.11} and done.returncode == 0 and
            'shift                    0.01 to 0.11 m moves the cloth by 173 mm' in done.stdout,
            'in the caller’s folder: %s' % done.stdout)
+    several = {key: value for key, value in SHIFT.items() if key != 'unit'}
+    several['is'] = ['stretch.warp', 'stretch.weft']
+    done = check(folder, script(folder, capabilities={'version': 1, 'simulator': 'mine', 'parameters': [several]}))
+    expect('0.01 to 0.11 moves the cloth by 173 mm, is stretch.warp, stretch.weft\n' in done.stdout,
+           'a number without unit that is several: ' + done.stdout)
     done = check(folder, script(folder, capabilities={
         'version': 1, 'simulator': 'mine', 'parameters': [dict(SHIFT, range=None)]}))
     expect(done.returncode == 0 and 'fixed' in done.stdout, 'a setting is left alone')
