@@ -204,8 +204,9 @@ check_type (ClothNpyReader * reader, const gchar * name, gboolean bytes,
   if (bytes ? type == CLOTH_NPY_UINT8 :
       type == CLOTH_NPY_FLOAT32 || type == CLOTH_NPY_FLOAT64)
     return TRUE;
-  return cloth_file_invalid (error,
-      "%s must hold items of type %s", name, bytes ? "uint8" : "float32");
+  return cloth_file_invalid (error, "%s must hold items of type %s: save "
+      "array.astype ('%s')", name, bytes ? "uint8" : "float32 or float64",
+      bytes ? "uint8" : "float64");
 }
 
 static gboolean

@@ -296,6 +296,36 @@ test_broken_garments (void)
   scratch_end ();
 }
 
+/* Arrays of whole numbers, as numpy.arange makes times: the error says which types are read. */
+static void
+test_types (void)
+{
+  static const struct
+  {
+    const gchar *array, *type;
+  } cases[] = {
+    {"times", "float64"}, {"positions", "float32 or float64"},
+    {"states", "uint8"},
+  };
+
+  for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
+    g_autofree gchar *path = NULL, *script = g_strdup_printf ("np.save("
+        "'t/%s.npy',np.load('t/%s.npy').astype('i4'))\n", cases[i].array,
+        cases[i].array);
+    g_autoptr (GError) error = NULL;
+
+    scratch_begin ();
+    write_take ("t", 2, FALSE);
+    peer_run (script);
+    path = scratch_path ("t");
+    g_assert_null (cloth_take_open (path, &error));
+    g_assert_error (error, CLOTH_FILE_ERROR, CLOTH_FILE_ERROR_INVALID);
+    g_assert_nonnull (strstr (error->message, cases[i].array));
+    g_assert_nonnull (strstr (error->message, cases[i].type));
+    scratch_end ();
+  }
+}
+
 static void
 test_refused_frames (void)
 {
@@ -788,6 +818,7 @@ main (int argc, char **argv)
   g_test_add_func ("/take/real", test_real_take);
   g_test_add_func ("/take/written", test_written_take);
   g_test_add_func ("/take/replaces-whole", test_replaces_whole);
+  g_test_add_func ("/take/types", test_types);
   g_test_add_func ("/take/refused-frames", test_refused_frames);
   g_test_add_func ("/take/hostile-json", test_hostile_json);
   g_test_add_func ("/take/broken", test_broken_takes);
