@@ -629,8 +629,8 @@ check_path (const ClothScene * scene, guint i, GError ** error)
 /* @scene: a scene that cloth_scene_check () accepts
  * @error: #ClothFileError, naming the clamp and the frames
  *
- * Refuses clamps that jump, which no simulation survives, before one is run. A diagnosis knows
- * better what is wrong with such a recording.
+ * Refuses clamps that jump, which no simulation survives, before one is run. Clamps in
+ * millimetres jump too: a diagnosis looks for these first.
  *
  * Returns: %TRUE when no clamp moves faster than sound
  */

@@ -318,6 +318,8 @@ def contradictions(folder):
     grid = p.reshape(len(p), 9, 9, 3)
     far, first, last, early = (p.copy() for _ in range(4))
     far[30, 40] = 1e30
+    thrown = c.copy()
+    thrown[30] += 50
     first[0], last[45:], early[:] = numpy.nan, numpy.nan, numpy.nan
     early[:8] = p[:8]
     noise = numpy.random.default_rng(1).standard_normal(p.shape)
@@ -337,6 +339,7 @@ def contradictions(folder):
             ('blurred', dict(positions=p + 0.03 * noise, noise_sigma_m=None),
              'mind the order of frames'),
             ('far', dict(positions=far), 'write NaN where a vertex was not seen'),
+            ('thrown', dict(clamps=thrown), 'the clamp of vertex 0 jumps 86.'),
             ('swapped', dict(clamps=c[:, ::-1]), 'the clamp of vertex 0 begins'),
             ('mirrored', dict(positions=grid[:, :, ::-1].reshape(p.shape)), 'not mirrored'),
             ('upended', dict(positions=grid[:, ::-1].reshape(p.shape)), 'not mirrored'),
