@@ -98,7 +98,7 @@ typedef struct
   ClothModel *fitted[CLOTH_DIAGNOSIS_N_SUBSETS];
   ClothModel *with;
   const ClothEffect *chance;
-  gboolean is_taken_back;       /* whether any was */
+  const ClothEffect *taken_back;        /* the likeliest of what was, or NULL */
 
   /* What was measured of each recording, and behind them of all that judge; made and read by
    * measure.c. */

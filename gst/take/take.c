@@ -453,7 +453,7 @@ cloth_take_get_time (const ClothTake * take, guint frame)
 /* @take: a take
  *
  * Returns: frames a second by its times, a whole number where these were rounded; 0 where
- *   they are not even
+ *   they are not even, or there is one only
  */
 gdouble
 cloth_take_get_rate (const ClothTake * take)
@@ -463,11 +463,13 @@ cloth_take_get_rate (const ClothTake * take)
 
   if (!take->times)
     return take->info->fps;
+  if (last == 0)
+    return 0.;
   for (guint i = 0; i < last; i++) {
     least = fmin (least, take->times[i + 1] - take->times[i]);
     most = fmax (most, take->times[i + 1] - take->times[i]);
   }
-  step = last > 0 ? (take->times[last] - take->times[0]) / last : 0.;
+  step = (take->times[last] - take->times[0]) / last;
   if (!(most - least < EVEN * step))
     return 0.;
   rate = rint (1. / step);

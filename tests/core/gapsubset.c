@@ -9,9 +9,10 @@
 #define N_DRAWS 1000
 #define MOST 3
 
-/* Draws of squares that share what varies from window to window, but for @spread of each effect's gain. */
+/* Draws of squares that share what varies from window to window, but for the spread of each. */
 static guint
-choose (const gdouble * squares, guint n, gdouble spread, gdouble floor)
+choose_spread (const gdouble * squares, const gdouble * spreads, guint n,
+    gdouble floor)
 {
   const guint n_subsets = 1u << n;
   g_autofree gdouble *draws = g_new (gdouble, n_subsets * N_DRAWS);
@@ -23,9 +24,21 @@ choose (const gdouble * squares, guint n, gdouble spread, gdouble floor)
 
     for (guint s = 0; s < n_subsets; s++)
       draws[s * N_DRAWS + i] = squares[s] + shared +
-          (s == n_subsets - 1 ? 0. : spread * cloth_random_gaussian (&random));
+          spreads[s] * cloth_random_gaussian (&random);
   }
   return cloth_gap_choose_subset (squares, draws, N_DRAWS, n, floor);
+}
+
+/* The same, with one spread of all but the last. */
+static guint
+choose (const gdouble * squares, guint n, gdouble spread, gdouble floor)
+{
+  const guint n_subsets = 1u << n;
+  gdouble spreads[1 << MOST] = { 0. };
+
+  for (guint s = 0; s + 1 < n_subsets; s++)
+    spreads[s] = spread;
+  return choose_spread (squares, spreads, n, floor);
 }
 
 /* A gain of 30 with a standard deviation of 10 is surely one: 1.645 × 10 < 30. One of 15 is not. What all
@@ -43,7 +56,8 @@ test_one (void)
           100., 100.}, 1, 0., 1.), ==, 0);
 }
 
-/* Where without it no more than the floor is left nobody can tell, so that it stays. */
+/* Where no more than the floor is left with it and without it nobody can tell, so that it stays; but it goes where it
+ * takes what was at the floor above it. */
 static void
 test_floor (void)
 {
@@ -51,6 +65,10 @@ test_floor (void)
           100., 85.}, 1, 10., 89.), ==, 0);
   g_assert_cmpuint (choose ((gdouble[]) {
           100., 85.}, 1, 10., 91.), ==, 1);
+  g_assert_cmpuint (choose ((gdouble[]) {
+          100., 300.}, 1, 10., 91.), ==, 0);
+  g_assert_cmpuint (choose ((gdouble[]) {
+          100., 300.}, 1, 10., 271.), ==, 1);
   g_assert_cmpuint (choose ((gdouble[]) {
           100., 85.}, 1, 10., NAN), ==, 1);
   g_assert_cmpuint (choose ((gdouble[]) {
@@ -80,6 +98,16 @@ test_same (void)
   g_assert_cmpuint (choose (squares, MOST, 4., 1.), ==, 6);
 }
 
+/* The first goes because of the second, which goes, too, as it varies: then the first comes back. */
+static void
+test_back (void)
+{
+  const gdouble squares[] = { 100., 70., 70., 60., 28., 21., 20.5, 20.6 };
+  const gdouble spreads[] = { 1., 1., 1., 1., 0.5, 0.5, 10., 0. };
+
+  g_assert_cmpuint (choose_spread (squares, spreads, MOST, 1.), ==, 5);
+}
+
 /* Nothing was accepted. */
 static void
 test_nothing (void)
@@ -96,6 +124,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/subset/floor", test_floor);
   g_test_add_func ("/gap/subset/two", test_two);
   g_test_add_func ("/gap/subset/same", test_same);
+  g_test_add_func ("/gap/subset/back", test_back);
   g_test_add_func ("/gap/subset/nothing", test_nothing);
   return g_test_run ();
 }

@@ -251,6 +251,46 @@ test_contradiction (void)
   g_assert_true (says (result, "effects.air_drag.coefficient would be"));
 }
 
+/* What acts on the take does not act on what judges, where something else does: with the effect the simulation comes
+ * no nearer there, so it is taken back, but where the user's own simulator was run with it. */
+static void
+test_taken_back (void)
+{
+  const gdouble drag = 2.;
+  g_autoptr (ClothModel) tilted = model_new (CLOTH_FORCE_MASS_SPRING);
+  g_autoptr (ClothTake) take = record (&filmed, "drag", sway_at, drag, 16);
+  g_autoptr (ClothTake) twin = record (&written, "twin", sway_at, 0., 17);
+  g_autoptr (ClothTake) after = record (&written, "after", sway_at, drag, 18);
+  g_autoptr (ClothTake) held = NULL;
+  ClothTake *twins[] = { twin, twin };
+  ClothGapOptions options = {.hold_outs = &held,.n_hold_outs = 1,
+    .simulated = twins,.n_simulated = 2,.effects = few,.seed = 1
+  };
+  g_autoptr (ClothGapResult) result = NULL, measured = NULL;
+  const ClothGapEffect *first;
+
+  g_assert_true (cloth_model_set (tilted, "effects.gravity_tilt.x", 3., NULL));
+  held = test_gap_record (&filmed, tilted, sway_at, parent, "held", 19);
+  result = diagnose (&take, 1, &options);
+  first = &g_array_index (result->effects, ClothGapEffect, 0);
+  g_assert_cmpstr (first->effect->id, ==, "air_drag");
+  g_assert_false (first->accepted);
+  g_assert_cmpint (result->verdict, ==, CLOTH_GAP_UNEXPLAINED);
+  g_assert_true (says (result, "air_drag, but the simulation with it is not "
+          "surely nearer"));
+  g_assert_true (isnan (result->gap_after.value));
+  g_assert_true (isnan (result->shrink.value));
+  g_assert_cmpuint (result->model->effects->len, ==, 0);
+  options.after = &after;
+  options.n_after = 1;
+  measured = diagnose (&take, 1, &options);
+  first = &g_array_index (measured->effects, ClothGapEffect, 0);
+  g_assert_true (first->accepted);
+  g_assert_false (says (measured, "surely nearer"));
+  g_assert_false (isnan (measured->measured_shrink.windows.value));
+  g_assert_cmpint (measured->verdict, ==, CLOTH_GAP_UNEXPLAINED);
+}
+
 /* Without twins the free run is measured, too, of takes and hold-outs. */
 static void
 test_no_twin (void)
@@ -341,6 +381,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/twin/no-gap", test_no_gap);
   g_test_add_func ("/gap/twin/contradiction", test_contradiction);
   g_test_add_func ("/gap/twin/all-measured", test_all_measured);
+  g_test_add_func ("/gap/twin/taken-back", test_taken_back);
   g_test_add_func ("/gap/twin/no-twin", test_no_twin);
   status = g_test_run ();
   test_gap_remove (parent);

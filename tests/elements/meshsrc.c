@@ -314,13 +314,15 @@ GST_START_TEST (test_even_times)
   static const struct
   {
     const gchar *times;
+    guint n_frames;
     gint n, d;
   } cases[] = {
-    {"np.arange(32)/50", 50, 1},
-    {"7+np.arange(32)/12.5", 25, 2},
+    {"np.arange(32)/50", 32, 50, 1},
+    {"7+np.arange(32)/12.5", 32, 25, 2},
     /* as a table has them */
-    {"np.round(np.arange(32)/30,6)", 30, 1},
-    {"np.arange(32)/50+.004*(np.arange(32)%2)", 0, 1},
+    {"np.round(np.arange(32)/30,6)", 32, 30, 1},
+    {"np.arange(32)/50+.004*(np.arange(32)%2)", 32, 0, 1},
+    {"np.zeros(1)", 1, 0, 1},
   };
 
   for (guint i = 0; i < G_N_ELEMENTS (cases); i++) {
@@ -328,8 +330,8 @@ GST_START_TEST (test_even_times)
         "j=json.load(open('" TAKE "/take.json'))\n"
         "del j['fps']; j['held']=[]\n"
         "json.dump(j,open('t/take.json','w'))\n"
-        "np.save('t/positions.npy',np.load('" TAKE "/positions.npy')[:32])\n"
-        "np.save('t/times.npy',%s)\n", cases[i].times);
+        "np.save('t/positions.npy',np.load('" TAKE "/positions.npy')[:%u])\n"
+        "np.save('t/times.npy',%s)\n", cases[i].n_frames, cases[i].times);
     g_autoptr (GstPad) pad = NULL;
     g_autoptr (GstCaps) caps = NULL;
     Player player;

@@ -366,7 +366,7 @@ guess (Maker * m, GError ** error)
   return TRUE;
 }
 
-/* Springs draw from a frame to the next one, at vertices that are seen in both. */
+/* Springs draw from a frame to the next one, at vertices that are seen in both; outlines are of any frame. */
 static gboolean
 check_rate (const Maker * m, GError ** error)
 {
@@ -374,6 +374,8 @@ check_rate (const Maker * m, GError ** error)
   const GArray *list = m->observations->list;
   const ClothObservation *one = NULL, *next = NULL;
 
+  if (m->outline)
+    return TRUE;
   for (gsize at = r->n; at < (gsize) r->n * r->n_frames; at++)
     if (r->seen[at] > 0. && r->seen[at - r->n] > 0.)
       return TRUE;
@@ -688,6 +690,10 @@ cloth_recording_new_observed (ClothTake * take,
     return NULL;
   if (!cloth_recording_check (r, TRUE, error))
     return NULL;
+  if (!cloth_scene_check_paths (r->scene, error)) {
+    g_prefix_error (error, "%s: ", r->name);
+    return NULL;
+  }
   x = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
   for (guint k = 0; (m.lone->len || m.outline) && k < MOST_TURNS; k++) {
     const gdouble moved = turn (&m, model, gain, options, x, error);

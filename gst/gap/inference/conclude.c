@@ -251,51 +251,59 @@ find_effect (ClothGapResult * result, const ClothEffect * effect)
   return NULL;
 }
 
-/* Whether a listed set has all effects of another. */
+/* Whether an effect of the likeliest set has less than 95% of the posterior: others may act in its place. */
 static gboolean
-has_all (const ClothGapSet * set, const ClothGapSet * part)
+is_exchanged (const ClothGapSet * best, const ClothGapEffect * e)
 {
-  for (guint i = 0; i < part->effects->len; i++)
-    if (!g_ptr_array_find (set->effects, g_ptr_array_index (part->effects, i),
-            NULL))
-      return FALSE;
-  return TRUE;
+  return e->probability < LISTED
+      && g_ptr_array_find (best->effects, (gpointer) e->effect, NULL);
 }
 
-/* Effects that can't be told apart: those of the likeliest set that other listed ones do without, and what
- * these have instead. A set that only adds to the likeliest one contradicts nothing. */
+/* Whether a set has an effect that the likeliest one has not, and lacks one that others may act in place of. A set
+ * that only adds to the likeliest one contradicts nothing. */
+static gboolean
+is_instead (const ClothGapSet * set, const ClothGapSet * best,
+    const GArray * effects, const ClothEffect * effect)
+{
+  if (!g_ptr_array_find (set->effects, (gpointer) effect, NULL)
+      || g_ptr_array_find (best->effects, (gpointer) effect, NULL))
+    return FALSE;
+  for (guint i = 0; i < effects->len; i++) {
+    const ClothGapEffect *e = &g_array_index (effects, ClothGapEffect, i);
+
+    if (is_exchanged (best, e)
+        && !g_ptr_array_find (set->effects, (gpointer) e->effect, NULL))
+      return TRUE;
+  }
+  return FALSE;
+}
+
+/* Effects that can't be told apart: those of the likeliest set that may be others, and what listed sets have
+ * instead; none where no set has anything instead. */
 static void
 fill_group (ClothDiagnosis * d)
 {
   GArray *sets = d->result->sets, *effects = d->result->effects;
+  g_autofree gboolean *instead = g_new0 (gboolean, effects->len + 1);
   const ClothGapSet *best;
-  guint n = 0;
+  gboolean any = FALSE;
 
   if (!sets->len)
     return;
   best = &g_array_index (sets, ClothGapSet, 0);
-  for (guint pass = 0; pass < 2; pass++) {
-    for (guint i = 0; i < effects->len; i++) {
-      ClothGapEffect *e = &g_array_index (effects, ClothGapEffect, i);
-      const gboolean is_in_best =
-          g_ptr_array_find (best->effects, (gpointer) e->effect, NULL);
-      gboolean is_exchanged = FALSE;
+  for (guint i = 0; i < effects->len; i++) {
+    for (guint k = 1; k < sets->len; k++)
+      instead[i] |= is_instead (&g_array_index (sets, ClothGapSet, k), best,
+          effects, g_array_index (effects, ClothGapEffect, i).effect);
+    any |= instead[i];
+  }
+  if (!any)
+    return;
+  for (guint i = 0; i < effects->len; i++) {
+    ClothGapEffect *e = &g_array_index (effects, ClothGapEffect, i);
 
-      for (guint k = 1; k < sets->len; k++) {
-        const ClothGapSet *set = &g_array_index (sets, ClothGapSet, k);
-
-        if (!has_all (set, best))
-          is_exchanged |= is_in_best != g_ptr_array_find (set->effects,
-              (gpointer) e->effect, NULL);
-      }
-      if (!is_exchanged)
-        continue;
-      n++;
-      if (pass)
-        e->group = 0;
-    }
-    if (pass == 0 && n < 2)
-      return;
+    if (instead[i] || is_exchanged (best, e))
+      e->group = 0;
   }
   cloth_gap_result_add_group (d->result, NULL, NAN);
 }

@@ -304,6 +304,8 @@ fit_accepted (ClothDiagnosis * d, const GArray * hypotheses, GError ** error)
     if (!refit (d, subset, start, error))
       return FALSE;
   }
+  if (d->n_accepted)
+    d->with = cloth_model_copy (d->fitted[n_subsets - 1]);
   return TRUE;
 }
 

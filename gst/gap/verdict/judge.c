@@ -178,12 +178,12 @@ cloth_diagnosis_decide (ClothDiagnosis * d)
     r->verdict =
         cloth_gap_result_is_ambiguous (r) ? CLOTH_GAP_AMBIGUOUS :
         CLOTH_GAP_EXPLAINED;
-  } else if (likely && d->is_taken_back) {
+  } else if (d->taken_back) {
     r->verdict = cloth_diagnosis_n_references (d) ? CLOTH_GAP_UNEXPLAINED :
         CLOTH_GAP_UNDECIDABLE;
-    r->reason = g_strdup_printf ("It is likelier than not that an effect acts, "
-        "%s first of all, but the simulation with it is not surely nearer to "
-        "the cloth.", likely->id);
+    r->reason = g_strdup_printf ("The residual speaks for %s, but the "
+        "simulation with it is not surely nearer to the cloth.",
+        d->taken_back->id);
   } else if (likely) {
     r->verdict = CLOTH_GAP_UNDECIDABLE;
     r->reason = g_strdup_printf ("It is likelier than not that an effect acts, "

@@ -489,17 +489,15 @@ add_judge (Square * sum, const Square * one, gdouble share)
 
 /* Where nothing judges there is no mean. */
 static void
-forget_judges (Work * w)
+forget_judges (Work * w, Kind kind)
 {
-  for (guint kind = 0; kind < N_KINDS; kind++) {
-    for (guint k = 0; k < w->n; k++)
-      w->judges->models[kind][k].square = NAN;
-    w->judges->floor[kind].square = w->judges->after[kind].square = NAN;
-  }
+  for (guint k = 0; k < w->n; k++)
+    w->judges->models[kind][k].square = NAN;
+  w->judges->floor[kind].square = w->judges->after[kind].square = NAN;
 }
 
 static void
-sum_judges (Work * w)
+sum_judges (Work * w, Kind kind)
 {
   ClothDiagnosis *d = w->d;
   gdouble seen = 0.;
@@ -507,18 +505,16 @@ sum_judges (Work * w)
   for (guint i = 0; i < d->recordings->len; i++)
     seen += is_judge (d, i) ? w->all[i].seen : 0.;
   if (!(seen > 0.))
-    forget_judges (w);
+    forget_judges (w, kind);
   for (guint i = 0; i < d->recordings->len; i++) {
     const Measured *one = &w->all[i];
 
     if (!is_judge (d, i) || !(one->seen > 0.))
       continue;
-    for (guint kind = 0; kind < N_KINDS; kind++) {
-      for (guint k = 0; k < w->n; k++)
-        add_judge (&w->judges->models[kind][k], &one->models[kind][k],
-            one->seen / seen);
-      add_judge (&w->judges->floor[kind], &one->floor[kind], one->seen / seen);
-    }
+    for (guint k = 0; k < w->n; k++)
+      add_judge (&w->judges->models[kind][k], &one->models[kind][k],
+          one->seen / seen);
+    add_judge (&w->judges->floor[kind], &one->floor[kind], one->seen / seen);
   }
   w->judges->seen = seen;
 }
@@ -664,21 +660,27 @@ keep_first (ClothDiagnosis * d, ClothWindowedGap * before,
 }
 
 /* Which of the accepted effects bring the simulation nearer to the cloth, by the gaps of all models from the one
- * without effects on. */
+ * without effects on. All of them where the user's simulator is run with them, which judges better than ours. */
 static guint
 choose_subset (const Work * w, const Square * models)
 {
-  const guint n = 1 << w->d->n_accepted;
+  const ClothDiagnosis *d = w->d;
+  const guint n = 1 << d->n_accepted;
+  const gdouble floor = w->judges->floor[WINDOWS].square;
   g_autofree gdouble *squares = g_new (gdouble, n);
   g_autofree gdouble *draws = g_new (gdouble, n * N_DRAWS);
 
+  if (d->afters->len || d->options->simulator)
+    return n - 1;
   for (guint k = 0; k < n; k++) {
     squares[k] = models[k].square;
     for (guint i = 0; i < N_DRAWS; i++)
       draws[k * N_DRAWS + i] = draw_of (&models[k], i);
   }
-  return cloth_gap_choose_subset (squares, draws, N_DRAWS,
-      w->d->n_accepted, w->judges->floor[WINDOWS].square);
+  /* no floor is below the noise */
+  return cloth_gap_choose_subset (squares, draws, N_DRAWS, d->n_accepted,
+      isnan (floor) ? cloth_recording_noise_square (cloth_diagnosis_recording
+          (d, first_judge (d))) : floor);
 }
 
 /* Takes back what is not of a subset of the accepted effects; @models: the gaps with each subset. */
@@ -688,37 +690,70 @@ keep_subset (ClothDiagnosis * d, const Square * models, guint subset)
   GArray *effects = d->result->effects;
   guint n = 0;
 
-  for (guint c = 0; c < d->n_accepted; c++) {
-    const ClothEffect *effect = cloth_diagnosis_accepted (d, c)->effect;
-    g_autofree gchar *note = NULL;
+  for (guint i = 0; i < effects->len; i++) {
+    ClothGapEffect *e = &g_array_index (effects, ClothGapEffect, i);
 
-    if (subset >> c & 1) {
-      d->accepted[n++] = d->accepted[c];
-      continue;
-    }
-    for (guint i = effects->len; i-- > 0;) {
-      ClothGapEffect *e = &g_array_index (effects, ClothGapEffect, i);
+    for (guint c = 0; c < d->n_accepted; c++) {
+      g_autofree gchar *note = NULL;
 
-      if (e->effect == effect)
-        e->accepted = FALSE;
+      if (cloth_diagnosis_accepted (d, c)->effect != e->effect
+          || subset >> c & 1)
+        continue;
+      note = g_strdup_printf ("The residual speaks for %s, but the simulation "
+          "with it is not surely nearer to the cloth (gap %.3g mm, without it "
+          "%.3g mm), so it is not accepted.", e->effect->id,
+          1e3 * sqrt (models[subset | 1u << c].square),
+          1e3 * sqrt (models[subset].square));
+      cloth_gap_result_add_note (d->result, note);
+      e->accepted = FALSE;
+      if (!d->taken_back)
+        d->taken_back = e->effect;
     }
-    note = g_strdup_printf ("The residual speaks for %s, but the simulation "
-        "with it is not surely nearer to the cloth (gap %.3g mm, without it "
-        "%.3g mm), so it is not accepted.", effect->id,
-        1e3 * sqrt (models[subset | 1u << c].square),
-        1e3 * sqrt (models[subset].square));
-    cloth_gap_result_add_note (d->result, note);
-    d->is_taken_back = TRUE;
   }
+  for (guint c = 0; c < d->n_accepted; c++)
+    if (subset >> c & 1)
+      d->accepted[n++] = d->accepted[c];
   d->n_accepted = n;
+  cloth_model_free (d->with);
   d->with = g_steal_pointer (&d->fitted[subset]);
+}
+
+/* Of the models with some of the accepted effects only that with those that help is measured on; it stands behind those
+ * without any. Returns: where */
+static guint
+choose_model (Work * w, guint faults)
+{
+  ClothDiagnosis *d = w->d;
+  const Square *models = w->judges->models[WINDOWS] + faults;
+  const guint subset = choose_subset (w, models);
+  const guint best = faults + (subset != 0), from = faults + subset;
+
+  keep_subset (d, models, subset);
+  for (guint i = 0; i <= d->recordings->len; i++) {
+    Square *squares = w->all[i].models[WINDOWS];
+    const Square square = squares[best];
+
+    squares[best] = squares[from];
+    squares[from] = square;
+  }
+  if (from != best) {
+    ClothWindowedGap *gap = w->first[best];
+
+    w->first[best] = w->first[from];
+    w->first[from] = gap;
+  }
+  while (w->n > best + 1)
+    cloth_windowed_gap_free (w->first[--w->n]);
+  if (subset)
+    w->models[best] = d->with;
+  return best;
 }
 
 /* @d: a diagnosis whose effects are known
  * @error: #ClothSimError or #ClothFitError
  *
  * Measures all takes and hold-outs, in windows and in the free run; the hold-outs judge, without any
- * the takes.
+ * the takes. Effects that don't bring the simulation nearer to the cloth are no longer accepted.
  *
  * Returns: whether they could be simulated
  */
@@ -728,7 +763,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
   const guint faults = cloth_diagnosis_count_faults (d) > 0;
   const guint n_subsets = 1 << d->n_accepted;
   g_auto (Work) w = { d, {d->model, d->model}, faults + n_subsets };
-  guint subset, best;
+  guint best = 0;
 
   for (guint i = 1; i < n_subsets; i++)
     w.models[faults + i] = d->fitted[i];
@@ -745,11 +780,10 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
     for (guint i = 0; i < d->recordings->len; i++)
       if (!is_baseline (d, i) && !measure_kind (&w, kind, i, error))
         return FALSE;
+    sum_judges (&w, kind);
+    if (kind == WINDOWS)
+      best = choose_model (&w, faults);
   }
-  sum_judges (&w);
-  subset = choose_subset (&w, w.judges->models[WINDOWS] + faults);
-  best = faults + subset;
-  keep_subset (d, w.judges->models[WINDOWS] + faults, subset);
   fill_result (&w, faults, best);
   keep_first (d, w.first[0], best ? w.first[best] : NULL);
   return TRUE;
