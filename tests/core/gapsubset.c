@@ -26,7 +26,7 @@ choose_spread (const gdouble * squares, const gdouble * spreads, guint n,
       draws[s * N_DRAWS + i] = squares[s] + shared +
           spreads[s] * cloth_random_gaussian (&random);
   }
-  return cloth_gap_choose_subset (squares, draws, N_DRAWS, n, floor);
+  return cloth_gap_choose_subset (squares, draws, N_DRAWS, n, 0, floor);
 }
 
 /* The same, with one spread of all but the last. */
@@ -108,6 +108,19 @@ test_back (void)
   g_assert_cmpuint (choose_spread (squares, spreads, MOST, 1.), ==, 5);
 }
 
+/* What is to be kept stays, though it does not help; another one goes. */
+static void
+test_kept (void)
+{
+  const gdouble squares[] = { 100., 98., 99., 101. };
+  gdouble draws[4 * N_DRAWS];
+
+  for (guint i = 0; i < 4 * N_DRAWS; i++)
+    draws[i] = squares[i / N_DRAWS];
+  g_assert_cmpuint (cloth_gap_choose_subset (squares, draws, N_DRAWS, 2, 2,
+          1.), ==, 2);
+}
+
 /* Nothing was accepted. */
 static void
 test_nothing (void)
@@ -125,6 +138,7 @@ main (int argc, char **argv)
   g_test_add_func ("/gap/subset/two", test_two);
   g_test_add_func ("/gap/subset/same", test_same);
   g_test_add_func ("/gap/subset/back", test_back);
+  g_test_add_func ("/gap/subset/kept", test_kept);
   g_test_add_func ("/gap/subset/nothing", test_nothing);
   return g_test_run ();
 }

@@ -660,7 +660,8 @@ keep_first (ClothDiagnosis * d, ClothWindowedGap * before,
 }
 
 /* Which of the accepted effects bring the simulation nearer to the cloth, by the gaps of all models from the one
- * without effects on. All of them where the user's simulator is run with them, which judges better than ours. */
+ * without effects on. All of them where the user's simulator is run with them, which judges better than ours. What
+ * clamps did is seen on them, and moves little of the cloth in a window that begins after it. */
 static guint
 choose_subset (const Work * w, const Square * models)
 {
@@ -669,6 +670,7 @@ choose_subset (const Work * w, const Square * models)
   const gdouble floor = w->judges->floor[WINDOWS].square;
   g_autofree gdouble *squares = g_new (gdouble, n);
   g_autofree gdouble *draws = g_new (gdouble, n * N_DRAWS);
+  guint kept = 0;
 
   if (d->afters->len || d->options->simulator)
     return n - 1;
@@ -677,10 +679,15 @@ choose_subset (const Work * w, const Square * models)
     for (guint i = 0; i < N_DRAWS; i++)
       draws[k * N_DRAWS + i] = draw_of (&models[k], i);
   }
+  for (guint c = 0; c < d->n_accepted; c++)
+    if (cloth_diagnosis_accepted (d, c)->effect->side == CLOTH_EFFECT_CLAMP)
+      kept |= 1u << c;
   /* no floor is below the noise */
   return cloth_gap_choose_subset (squares, draws, N_DRAWS, d->n_accepted,
-      isnan (floor) ? cloth_recording_noise_square (cloth_diagnosis_recording
-          (d, first_judge (d))) : floor);
+      kept,
+      isnan (floor) ?
+      cloth_recording_noise_square (cloth_diagnosis_recording (d,
+              first_judge (d))) : floor);
 }
 
 /* Takes back what is not of a subset of the accepted effects; @models: the gaps with each subset. */

@@ -55,7 +55,7 @@ helps (const Gaps * g, guint with, guint without)
 
 /* The subset without the effect that is missed least, of those that don't help; itself when all do. */
 static guint
-drop_one (const Gaps * g, guint subset, guint n_effects)
+drop_one (const Gaps * g, guint subset, guint n_effects, guint kept)
 {
   gdouble least = INFINITY;
   guint next = subset;
@@ -64,7 +64,8 @@ drop_one (const Gaps * g, guint subset, guint n_effects)
     const guint without = subset & ~(1u << k);
     const gdouble gain = g->squares[without] - g->squares[subset];
 
-    if (without == subset || !can_tell (g, subset, without) || !(gain < least)
+    if (without == subset || (kept >> k & 1)
+        || !can_tell (g, subset, without) || !(gain < least)
         || helps (g, subset, without))
       continue;
     least = gain;
@@ -98,18 +99,19 @@ add_one (const Gaps * g, guint subset, guint n_effects)
  * @draws: (array): draws of these that belong together, [2^n_effects][n_draws]
  * @n_draws: how many, at least one
  * @n_effects: how many effects there are
+ * @kept: those that stay: bit k stands for the k-th
  * @floor: what a simulation that lacks nothing is off by, mean square
  *
  * Returns: the subset without what brings the simulation no nearer to the cloth
  */
 guint
 cloth_gap_choose_subset (const gdouble * squares, const gdouble * draws,
-    guint n_draws, guint n_effects, gdouble floor)
+    guint n_draws, guint n_effects, guint kept, gdouble floor)
 {
   const Gaps g = { squares, draws, n_draws, floor };
   guint subset = (1u << n_effects) - 1, next;
 
-  while ((next = drop_one (&g, subset, n_effects)) != subset)
+  while ((next = drop_one (&g, subset, n_effects, kept)) != subset)
     subset = next;
   /* one went because of another that went after it */
   while ((next = add_one (&g, subset, n_effects)) != subset)

@@ -11,6 +11,7 @@ G_BEGIN_DECLS
 #define CLOTH_GAP_LEAST_ABOVE_SHARE 0.1
 
 guint cloth_gap_choose_subset (const gdouble * squares,
-    const gdouble * draws, guint n_draws, guint n_effects, gdouble floor);
+    const gdouble * draws, guint n_draws, guint n_effects, guint kept,
+    gdouble floor);
 
 G_END_DECLS
