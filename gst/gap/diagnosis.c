@@ -195,6 +195,16 @@ cloth_diagnosis_other_model (const ClothModel * model)
 }
 
 /* @d: a diagnosis
+ *
+ * Returns: whether the user's simulator is run with the accepted effects, which judges them better than ours
+ */
+gboolean
+cloth_diagnosis_runs_theirs (const ClothDiagnosis * d)
+{
+  return d->afters->len || d->options->simulator;
+}
+
+/* @d: a diagnosis
  * @subset: which of the accepted effects: bit k stands for the k-th
  * @directions: (out) (array): the free numbers and the directions of what is accepted, but those of
  *   what is there or not

@@ -91,7 +91,7 @@ typedef struct
 
   /* Accepted effects, made by conclude.c, read by verdict/: candidates. The models with each subset of
    * them, fitted by infer.c on what doesn't judge: bit k of the index says that the k-th acts; NULL where
-   * there is none. measure.c takes back what brings the simulation no nearer to the cloth, and keeps the
+   * there is none, and but for all of them where the user's simulator judges. measure.c takes back what brings the simulation no nearer to the cloth, and keeps the
    * model with the others; NULL without any. And an effect of chance that is likelier than not, or NULL. */
   guint accepted[CLOTH_DIAGNOSIS_MAX_ACCEPTED];
   guint n_accepted;
@@ -174,6 +174,7 @@ ClothRecording *cloth_diagnosis_after (const ClothDiagnosis * d,
     guint recording);
 guint cloth_diagnosis_count_faults (const ClothDiagnosis * d);
 ClothModel *cloth_diagnosis_other_model (const ClothModel * model);
+gboolean cloth_diagnosis_runs_theirs (const ClothDiagnosis * d);
 guint cloth_diagnosis_list_accepted (const ClothDiagnosis * d,
     guint subset, guint * directions, gdouble * precisions);
 ClothRecording *cloth_diagnosis_correct (const ClothRecording * recording,

@@ -200,9 +200,9 @@ is_same_place (const gfloat * positions, guint32 a, guint32 b)
   return compare_places (&a, &b, (gpointer) positions) == 0;
 }
 
-/* Vertices that are one, though the mesh has them apart. */
+/* Vertices that are in one place in the first frame. */
 static void
-look_beside (Pass * pass, guint frame, gfloat * positions, guint32 n)
+begin_beside (Pass * pass, gfloat * positions, guint32 n)
 {
   g_autofree guint32 *order = g_new (guint32, n);
   guint32 n_seen = 0;
@@ -211,12 +211,8 @@ look_beside (Pass * pass, guint frame, gfloat * positions, guint32 n)
     const gfloat *at = positions + 3 * (gsize) v;
 
     /* many programs write zeros for what they don't see */
-    if (frame == 0 && !isnan (at[0]) && (at[0] != 0 || at[1] != 0
-            || at[2] != 0))
+    if (!isnan (at[0]) && (at[0] != 0 || at[1] != 0 || at[2] != 0))
       order[n_seen++] = v;
-    else if (frame > 0 && pass->beside[v] != CLOTH_NO_VERTEX
-        && !is_same_place (positions, v, pass->beside[v]))
-      pass->beside[v] = CLOTH_NO_VERTEX;
   }
   g_qsort_with_data (order, (gint) n_seen, sizeof *order, compare_places,
       positions);
@@ -225,6 +221,20 @@ look_beside (Pass * pass, guint frame, gfloat * positions, guint32 n)
       pass->beside[order[i]] = order[i - 1];
       pass->beside[order[i - 1]] = order[i];
     }
+}
+
+/* Vertices that are one, though the mesh has them apart. */
+static void
+look_beside (Pass * pass, guint frame, gfloat * positions, guint32 n)
+{
+  if (frame == 0) {
+    begin_beside (pass, positions, n);
+    return;
+  }
+  for (guint32 v = 0; v < n; v++)
+    if (pass->beside[v] != CLOTH_NO_VERTEX
+        && !is_same_place (positions, v, pass->beside[v]))
+      pass->beside[v] = CLOTH_NO_VERTEX;
 }
 
 static void
@@ -437,20 +447,21 @@ add_notes (GString * table, const ClothTake * take, const Pass * pass)
     GArray *stretches = pass->stretches[k];
     const gdouble stretch = cloth_median ((gdouble *) (gpointer)
         stretches->data, stretches->len);
+    g_autofree gchar *noise = NULL;
 
-    g_autofree gchar *noise = stretch > 1 ?
+    /* NaN is neither */
+    if (!(stretch > ODD_STRETCH || stretch < ODD_SHRINKAGE))
+      continue;
+    noise = stretch > 1 ?
         g_strdup_printf ("; noise of about %.2g mm would do the same",
         1000 * find_noise (cloth_take_get_topology (take), SIDES[k],
             stretch)) : g_strdup ("");
-
-    /* NaN is neither */
-    if (stretch > ODD_STRETCH || stretch < ODD_SHRINKAGE)
-      cloth_summary_add (table, "note", "along %s neighbours are %.2f times "
-          "as far apart as on the flat cloth: see that %s, the unit of the "
-          "places (of filmed cloth that of the rig) and the order of the vertices "
-          "are right%s", cloth_summary_name_sides (SIDES[k], grid), stretch,
-          !grid ? "the uv of the mesh" : k == 0 ? "its width" : "its height",
-          noise);
+    cloth_summary_add (table, "note", "along %s neighbours are %.2f times "
+        "as far apart as on the flat cloth: see that %s, the unit of the "
+        "places (of filmed cloth that of the rig) and the order of the vertices "
+        "are right%s", cloth_summary_name_sides (SIDES[k], grid), stretch,
+        !grid ? "the uv of the mesh" : k == 0 ? "its width" : "its height",
+        noise);
   }
   if (pass->below[2] < MAX (fabs (pass->below[0]), MAX (fabs (pass->below[1]),
               fabs (pass->below[2]))) / 2)

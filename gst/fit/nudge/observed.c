@@ -688,12 +688,9 @@ cloth_recording_new_observed (ClothTake * take,
       || !find_places (&m, error) || !guess (&m, error)
       || !check_rate (&m, error) || !finish (&m, error))
     return NULL;
-  if (!cloth_recording_check (r, TRUE, error))
+  if (!cloth_recording_check (r, TRUE, error)
+      || !cloth_recording_check_paths (r, error))
     return NULL;
-  if (!cloth_scene_check_paths (r->scene, error)) {
-    g_prefix_error (error, "%s: ", r->name);
-    return NULL;
-  }
   x = g_new (gdouble, 3 * (gsize) r->n * r->n_frames);
   for (guint k = 0; (m.lone->len || m.outline) && k < MOST_TURNS; k++) {
     const gdouble moved = turn (&m, model, gain, options, x, error);

@@ -336,6 +336,20 @@ cloth_recording_check (const ClothRecording * recording, gboolean told,
       && cloth_recording_check_clamps (recording, error);
 }
 
+/* @recording: a recording that cloth_recording_check () accepts, with the paths of its clamps
+ * @error: #ClothFileError
+ *
+ * Returns: as cloth_scene_check_paths ()
+ */
+gboolean
+cloth_recording_check_paths (const ClothRecording * recording, GError ** error)
+{
+  if (cloth_scene_check_paths (recording->scene, error))
+    return TRUE;
+  g_prefix_error (error, "%s: ", recording->name);
+  return FALSE;
+}
+
 /* @recording: a recording
  * @other: another of the same cloth
  * @error: #ClothFitError

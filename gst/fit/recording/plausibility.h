@@ -16,6 +16,8 @@ gboolean cloth_recording_check_clamps (const ClothRecording * recording,
     GError ** error);
 gboolean cloth_recording_check (const ClothRecording * recording,
     gboolean told, GError ** error);
+gboolean cloth_recording_check_paths (const ClothRecording * recording,
+    GError ** error);
 gboolean cloth_recording_check_other (const ClothRecording * recording,
     const ClothRecording * other, GError ** error);
 

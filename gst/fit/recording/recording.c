@@ -173,10 +173,8 @@ cloth_recording_new (ClothTake * take, GError ** error)
   cloth_recording_interpolate (r);
   if (!cloth_recording_find_paths (r, error))
     return NULL;
-  if (!cloth_scene_check_paths (r->scene, error)) {
-    g_prefix_error (error, "%s: ", r->name);
+  if (!cloth_recording_check_paths (r, error))
     return NULL;
-  }
   cloth_recording_differentiate (r);
   return g_steal_pointer (&r);
 }

@@ -312,15 +312,20 @@ compare_by_residual (gconstpointer a, gconstpointer b)
   return x->by_residual < y->by_residual ? -1 : x->by_residual > y->by_residual;
 }
 
-/* The one of the list with the same effects, or NULL: none is there twice. */
-static ClothGapHypothesis *
-find_same (const GArray * hypotheses, const ClothGapHypothesis * h)
+/* @hypotheses: (element-type ClothGapHypothesis): explanations, none of which is there twice
+ * @hypothesis: one
+ *
+ * Returns: (nullable): the one of the list with the same effects
+ */
+ClothGapHypothesis *
+cloth_gap_hypotheses_find (const GArray * hypotheses,
+    const ClothGapHypothesis * hypothesis)
 {
   for (guint i = 0; i < hypotheses->len; i++) {
     ClothGapHypothesis *other = &g_array_index (hypotheses,
         ClothGapHypothesis, i);
 
-    if (cloth_gap_hypothesis_is_same (other, h))
+    if (cloth_gap_hypothesis_is_same (other, hypothesis))
       return other;
   }
   return NULL;
@@ -335,7 +340,7 @@ find_part (const GArray * hypotheses, const ClothGapHypothesis * h, guint c)
   for (guint k = 0; k < h->n; k++)
     if (k != c)
       part.candidates[part.n++] = h->candidates[k];
-  return find_same (hypotheses, &part);
+  return cloth_gap_hypotheses_find (hypotheses, &part);
 }
 
 /* A set and one more; FALSE when that can't be. */
@@ -394,7 +399,8 @@ grow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
       ClothGapHypothesis h;
 
       if (!cloth_gap_hypothesis_has (set, one)
-          && add_one (d, l->stack, set, one, &h) && !find_same (all, &h))
+          && add_one (d, l->stack, set, one, &h)
+          && !cloth_gap_hypotheses_find (all, &h))
         g_array_append_val (all, h);
     }
   }
@@ -411,9 +417,10 @@ static void
 append_best (GArray * hypotheses, const GArray * from, guint most)
 {
   for (guint i = 0; i < MIN (most, from->len); i++)
-    if (!find_same (hypotheses, &g_array_index (from, ClothGapHypothesis, i)))
-      g_array_append_vals (hypotheses, &g_array_index (from,
-              ClothGapHypothesis, i), 1);
+    if (!cloth_gap_hypotheses_find (hypotheses, &g_array_index (from,
+                ClothGapHypothesis, i)))
+      g_array_append_vals (hypotheses, &g_array_index (from, ClothGapHypothesis,
+              i), 1);
 }
 
 static gboolean
@@ -454,7 +461,7 @@ list_hypotheses (const ClothDiagnosis * d, const ClothGapLinearisation * l,
   }
   cloth_gap_hypothesis_init (&none, d->candidates, l->stack, NULL, 0);
   none.is_compared = l->base->n == 0;
-  if (!find_same (hypotheses, &none))
+  if (!cloth_gap_hypotheses_find (hypotheses, &none))
     g_array_append_val (hypotheses, none);
   cloth_gap_hypothesis_init (&start, d->candidates, l->stack,
       l->base->candidates, l->base->n);
@@ -794,7 +801,7 @@ blow (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     if (!cloth_candidate_is_stochastic (candidate_of (d, h->candidates[c])))
       list[n_list++] = h->candidates[c];
   cloth_gap_hypothesis_init (&without, d->candidates, l->stack, list, n_list);
-  other = find_same (hypotheses, &without);
+  other = cloth_gap_hypotheses_find (hypotheses, &without);
   if (!other || !other->z)
     return;
   h->z = g_memdup2 (other->z, size * sizeof *h->z);
@@ -981,7 +988,8 @@ static void
 raise_parts (const ClothDiagnosis * d, const ClothGapLinearisation * l,
     GArray * hypotheses)
 {
-  const ClothGapHypothesis *now = find_same (hypotheses, l->base);
+  const ClothGapHypothesis *now =
+      cloth_gap_hypotheses_find (hypotheses, l->base);
 
   if (!now || !now->is_compared || !now->z)
     return;

@@ -66,6 +66,8 @@ typedef struct {
 } ClothGapLinearisation;
 
 GArray *cloth_gap_hypotheses_new (void);
+ClothGapHypothesis *cloth_gap_hypotheses_find (const GArray * hypotheses,
+    const ClothGapHypothesis * hypothesis);
 gboolean cloth_gap_hypothesis_init (ClothGapHypothesis * hypothesis,
     const ClothCandidates * candidates, const ClothGapStack * stack,
     const guint * list, guint n);

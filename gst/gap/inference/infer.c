@@ -267,8 +267,7 @@ static ClothModel *
 make_accepted_model (const ClothDiagnosis * d, const GArray * hypotheses,
     guint subset)
 {
-  const ClothGapHypothesis *best = &g_array_index (hypotheses,
-      ClothGapHypothesis, 0);
+  const ClothGapHypothesis *from;
   guint list[CLOTH_DIAGNOSIS_MAX_ACCEPTED], n = 0;
   ClothGapHypothesis some;
 
@@ -276,27 +275,26 @@ make_accepted_model (const ClothDiagnosis * d, const GArray * hypotheses,
     if (subset >> c & 1)
       list[n++] = d->accepted[c];
   cloth_gap_hypothesis_init (&some, d->candidates, NULL, list, n);
-  for (guint i = 0; i < hypotheses->len; i++) {
-    const ClothGapHypothesis *h = &g_array_index (hypotheses,
-        ClothGapHypothesis, i);
-
-    if (h->z && cloth_gap_hypothesis_is_same (h, &some))
-      best = h;
-  }
+  from = cloth_gap_hypotheses_find (hypotheses, &some);
+  if (!from || !from->z)
+    from = &g_array_index (hypotheses, ClothGapHypothesis, 0);
   for (guint k = 0; k < some.n_directions; k++)
-    for (guint i = 0; i < best->n_directions; i++)
-      if (best->directions[i] == some.directions[k])
-        some.at[k] = best->at[i];
+    for (guint i = 0; i < from->n_directions; i++)
+      if (from->directions[i] == some.directions[k])
+        some.at[k] = from->at[i];
   return cloth_gap_hypothesis_make_model (d, &some);
 }
 
-/* Fits the model with each subset of what was accepted, so that it shows what each effect is good for. */
+/* Fits the model with each subset of what was accepted, so that it shows what each effect is good for; with all of it
+ * only where the user's simulator shows that. */
 static gboolean
 fit_accepted (ClothDiagnosis * d, const GArray * hypotheses, GError ** error)
 {
   const guint n_subsets = 1 << d->n_accepted;
+  const guint first = cloth_diagnosis_runs_theirs (d) && d->n_accepted ?
+      n_subsets - 1 : 1;
 
-  for (guint subset = 1; subset < n_subsets; subset++) {
+  for (guint subset = first; subset < n_subsets; subset++) {
     g_autoptr (ClothModel) start = make_accepted_model (d, hypotheses, subset);
 
     cloth_diagnosis_begin_part (d, 0.75 + 0.1 * (subset - 1) / n_subsets,

@@ -660,8 +660,7 @@ keep_first (ClothDiagnosis * d, ClothWindowedGap * before,
 }
 
 /* Which of the accepted effects bring the simulation nearer to the cloth, by the gaps of all models from the one
- * without effects on. All of them where the user's simulator is run with them, which judges better than ours. What
- * clamps did is seen on them, and moves little of the cloth in a window that begins after it. */
+ * without effects on. What clamps did is seen on them, and moves little of the cloth in a window that begins after it. */
 static guint
 choose_subset (const Work * w, const Square * models)
 {
@@ -672,8 +671,6 @@ choose_subset (const Work * w, const Square * models)
   g_autofree gdouble *draws = g_new (gdouble, n * N_DRAWS);
   guint kept = 0;
 
-  if (d->afters->len || d->options->simulator)
-    return n - 1;
   for (guint k = 0; k < n; k++) {
     squares[k] = models[k].square;
     for (guint i = 0; i < N_DRAWS; i++)
@@ -769,11 +766,12 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
 {
   const guint faults = cloth_diagnosis_count_faults (d) > 0;
   const guint n_subsets = 1 << d->n_accepted;
-  g_auto (Work) w = { d, {d->model, d->model}, faults + n_subsets };
-  guint best = 0;
+  g_auto (Work) w = { d, {d->model, d->model}, faults + 1 };
+  guint best = faults + (d->n_accepted > 0);
 
   for (guint i = 1; i < n_subsets; i++)
-    w.models[faults + i] = d->fitted[i];
+    if (d->fitted[i])
+      w.models[w.n++] = d->fitted[i];
   d->measured = g_array_new (FALSE, TRUE, sizeof (Measured));
   g_array_set_clear_func (d->measured, measured_clear);
   g_array_set_size (d->measured, d->recordings->len + 1);
@@ -788,7 +786,7 @@ cloth_diagnosis_measure (ClothDiagnosis * d, GError ** error)
       if (!is_baseline (d, i) && !measure_kind (&w, kind, i, error))
         return FALSE;
     sum_judges (&w, kind);
-    if (kind == WINDOWS)
+    if (kind == WINDOWS && !cloth_diagnosis_runs_theirs (d))
       best = choose_model (&w, faults);
   }
   fill_result (&w, faults, best);
